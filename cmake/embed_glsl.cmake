@@ -1,0 +1,28 @@
+# cmake -D OUT=<header> -D SOURCES=<a.glsl;b.glsl> -P embed_glsl.cmake
+# A C++ string literal may be long but not endless (65536 characters in the standard's minimum): text is cut into
+# pieces that the compiler joins.
+set(items "")
+foreach(source ${SOURCES})
+  get_filename_component(name ${source} NAME)
+  file(READ ${source} text)
+  string(FIND "${text}" ")postfx_glsl\"" clash)
+  if(NOT clash EQUAL -1)
+    message(FATAL_ERROR "${source} contains the delimiter of its own embedding")
+  endif()
+  string(LENGTH "${text}" length)
+  set(pieces "")
+  set(at 0)
+  while(at LESS length)
+    string(SUBSTRING "${text}" ${at} 8000 piece)
+    string(APPEND pieces "R\"postfx_glsl(${piece})postfx_glsl\"\n")
+    math(EXPR at "${at} + 8000")
+  endwhile()
+  string(APPEND items "    {sizeof(postfx_source), 0, \"${name}\",\n${pieces}, \"${source}\"},\n")
+endforeach()
+if(NOT items)
+  message(FATAL_ERROR "no *.glsl to embed in ${OUT}")
+endif()
+file(WRITE ${OUT}.new "// Made by embed_glsl.cmake.\n#pragma once\n\n#include <postfx/plugin.h>\n\n\
+namespace {\nconstexpr postfx_source postfx_embedded_sources[] = {\n${items}};\n}\n")
+execute_process(COMMAND ${CMAKE_COMMAND} -E copy_if_different ${OUT}.new ${OUT})
+file(TOUCH_NOCREATE ${OUT})

@@ -1,0 +1,103 @@
+// The effects that were found: plugins opened, their declarations checked and copied.
+#pragma once
+
+#include <postfx/plugin.h>
+
+#include <array>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace postfx {
+
+enum class ParameterKind { number, integer, toggle, choice, color };
+
+/// One parameter as declared by its effect.
+struct ParameterInfo {
+    std::string id;
+    ParameterKind kind = ParameterKind::number;
+    std::string unit; ///< "m", "mm", "px", ... or ""
+    std::string help;
+    std::array<double, 4> default_value{};
+    double minimum = 0, maximum = 1, step = 0; ///< step 0 = continuous
+    std::optional<double> identity;            ///< value at which the effect does nothing
+    std::vector<std::string> choices;
+    bool constant = false; ///< compiled into the shader
+    bool logarithmic = false;
+
+    /// How many of the four numbers count: 3 for a color, else 1.
+    int components() const { return kind == ParameterKind::color ? 3 : 1; }
+    /// "float", "int", "bool", "choice" or "color".
+    std::string_view kind_name() const;
+};
+
+/// A parameter's value; a choice is its index, a toggle 0 or 1.
+using Value = std::array<double, 4>;
+
+struct LevelInfo {
+    std::string id;
+    std::string help;
+};
+
+/// GLSL that came in a module.
+struct SourceInfo {
+    std::string name;
+    std::string text;
+    std::string path;         ///< where it was at build time, may be empty
+    std::string not_pointwise; ///< why it can't be a compose function; empty = nothing forbidden was found in it
+};
+
+/// One effect as found. Immutable; shared by chains and plans that use it.
+struct EffectInfo {
+    std::string id;
+    std::string version;
+    std::string help;
+    std::string stage; ///< "scene", "scene_to_display", "display"
+    std::vector<ParameterInfo> parameters;
+    std::vector<std::string> reads; ///< attachments besides the chain's colour
+    std::vector<LevelInfo> levels;  ///< empty = one quality only
+    int default_level = 0;
+    std::vector<SourceInfo> sources;
+    std::filesystem::path module_path;
+    const postfx_effect* abi = nullptr; ///< stays mapped until the process ends
+
+    /// Index into parameters; nothing if there is none of that id.
+    std::optional<std::size_t> find_parameter(std::string_view parameter_id) const;
+    std::vector<Value> default_values() const;
+    const SourceInfo* find_source(std::string_view name) const;
+};
+
+using EffectPtr = std::shared_ptr<const EffectInfo>;
+
+/// Effects by id, in alphabetical order.
+class Catalog {
+public:
+    /// Where plugins are looked for, first hit by effect id wins: `first` (--plugin-dir), then POSTFX_PLUGIN_PATH, the
+    /// user's data directory, the install prefix or build tree relative to the library. Never the current directory:
+    /// empty, relative or world-writable entries are refused with a note.
+    static Catalog discover(const std::vector<std::filesystem::path>& first = {});
+
+    /// Open one module and add its effects. Throws Error when it is not a plugin, has another major version or
+    /// declares something wrong; the message names file, effect and field.
+    void load(const std::filesystem::path& module);
+    /// Check a module's declarations and add its effects, without opening anything. `origin` is for messages.
+    void add(const postfx_module& module, const std::filesystem::path& origin);
+
+    const std::vector<EffectPtr>& effects() const { return effects_; }
+    /// Null when there is none.
+    EffectPtr find(std::string_view id) const;
+    std::vector<std::string> ids() const;
+    /// Directories searched, modules refused and why, shadowed copies: one line each.
+    const std::vector<std::string>& notes() const { return notes_; }
+
+private:
+    void scan(const std::filesystem::path& directory);
+
+    std::vector<EffectPtr> effects_;
+    std::vector<std::string> notes_;
+};
+
+} // namespace postfx

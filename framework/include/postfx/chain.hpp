@@ -1,0 +1,51 @@
+// A chain: which effects, in which order, with which values. Read from YAML or made in code.
+#pragma once
+
+#include <postfx/catalog.hpp>
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace postfx {
+
+/// One effect of a chain with its values.
+struct ChainEntry {
+    EffectPtr effect;
+    std::string name; ///< unique in the chain: the effect's id, or what `name:` says; the second bloom is "bloom_2"
+    bool enabled = true;
+    int level = 0;             ///< index into effect->levels
+    std::vector<Value> values; ///< one per parameter of the effect, within range
+
+    /// Set a value; out of range it is clamped and false is returned. Throws Error for an unknown parameter.
+    bool set(std::string_view parameter, double value);
+};
+
+struct Chain {
+    std::vector<ChainEntry> entries;
+
+    /// Append an effect with its defaults. Throws Error when the catalog has none of that id.
+    ChainEntry& add(const Catalog& catalog, std::string_view effect_id);
+    /// Null when there is none of that name.
+    ChainEntry* find(std::string_view name);
+};
+
+/// Read a chain file. Throws Error with file:line:column, what was expected and the nearest name.
+///
+///     include: default.yaml            # optional; another chain, relative to this file
+///     overrides: {grain: {amount: 0}}  # optional; by entry name, values (and enabled, quality) of included entries
+///     effects:
+///       - vignette                     # with its defaults
+///       - bloom: {intensity: 0.2, quality: high, enabled: true, name: glow}
+Chain read_chain(const std::filesystem::path& file, const Catalog& catalog);
+
+/// The same from text; `origin` names it in messages and anchors relative includes.
+Chain parse_chain(const std::string& yaml, const std::filesystem::path& origin, const Catalog& catalog);
+
+/// One item of `effects:`, e.g. "bloom: {intensity: 0.2}" or "vignette", appended to `chain`.
+void parse_chain_entry(const std::string& yaml, const std::string& origin, const Catalog& catalog, Chain& chain);
+
+/// JSON Schema (draft 2020-12) of the chain file, from the effects found; as text with 2-space indent.
+std::string chain_schema(const Catalog& catalog);
+
+} // namespace postfx

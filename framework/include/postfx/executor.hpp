@@ -1,0 +1,57 @@
+// Draws plans. From here on there is OpenGL: a current 4.5 core context.
+#pragma once
+
+#include <postfx/image.hpp>
+#include <postfx/plan.hpp>
+#include <postfx/report.hpp>
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <vector>
+
+namespace postfx {
+
+/// What changes from frame to frame without a new plan.
+struct FrameInputs {
+    std::vector<std::uint32_t> textures; ///< GL names, in the order of Plan::attachments
+    Camera camera;                       ///< where it is now; same projection as in the plan's facts
+    double time = 0;                     ///< seconds
+    std::uint32_t frame = 0;             ///< counts frames; noise is a function of (pixel, frame, seed)
+    std::uint32_t seed = 0;
+};
+
+enum class Timing {
+    off,
+    gpu,     ///< GL timestamps, read some frames late
+    profile, ///< CPU time of all threads and wall time, with glFinish around every pass: honest on software GL
+};
+
+class Executor {
+public:
+    /// `program_cache`: directory for linked programs between runs; empty = none.
+    explicit Executor(std::filesystem::path program_cache = {});
+    ~Executor();
+    Executor(Executor&&) noexcept;
+    Executor& operator=(Executor&&) noexcept;
+
+    /// Compile and allocate what `plan` needs and make it current. If a shader fails, throws Error with effect, file
+    /// and line, and the plan before stays current.
+    void prepare(const Plan& plan);
+
+    /// Draw the current plan. Creates no GL object and allocates no heap memory once it has run twice after prepare().
+    /// Returns the GL name of the picture's texture: the executor's own, valid until the next call, or an input.
+    std::uint32_t run(const FrameInputs& inputs, Timing timing = Timing::off);
+
+    /// What the last run did and cost.
+    Report report() const;
+
+    /// The picture of the last run (waits for it).
+    Image read_picture() const;
+
+private:
+    struct State;
+    std::unique_ptr<State> state_;
+};
+
+} // namespace postfx

@@ -1,0 +1,113 @@
+// What will be drawn, as pure data. Chain + Facts -> Plan; no OpenGL.
+#pragma once
+
+#include <postfx/camera.hpp>
+#include <postfx/chain.hpp>
+#include <postfx/format.hpp>
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace postfx {
+
+/// What the picture is to be.
+enum class Output {
+    linear,  ///< the chain's result in the working format, unencoded
+    display, ///< rgba8: sRGB encoded, dithered
+};
+
+/// What the host knows before any pixel is drawn.
+struct Facts {
+    int width = 0, height = 0; ///< pixels
+    Camera camera;
+    std::vector<std::string> attachments = {"color"}; ///< what can be provided, in any order
+    Format working_format = Format::rgba16f;
+    Output output = Output::display;
+    bool color_is_8bit = false; ///< the picture came as 8-bit codes: with nothing to do, they are not dithered
+    bool fuse = true;           ///< false: every effect writes its own target
+};
+
+/// A texture that a pass reads or writes: an attachment of the scene, or a target of the plan.
+struct ImageRef {
+    enum class Kind { none, attachment, target } kind = Kind::none;
+    int index = -1; ///< into Plan::attachments or Plan::targets
+    bool operator==(const ImageRef&) const = default;
+};
+
+/// A texture that the executor provides. Several images of the plan may share one, one after the other.
+struct Target {
+    int width = 0, height = 0;
+    Format format = Format::rgba16f;
+    std::size_t bytes() const;
+};
+
+/// A whole fragment shader with the files that its `#line` numbers refer to. Shared by plans; `key` names its text.
+struct ProgramSource {
+    std::string text;
+    std::vector<std::string> files; ///< by source-string number
+    std::uint64_t key = 0;          ///< hash of text
+};
+
+struct PassInput {
+    std::string name; ///< of the sampler argument
+    ImageRef image;
+    bool linear = false;
+};
+
+struct Pass {
+    std::string name;                 ///< "bloom/down", "chromatic_aberration+vignette+output"
+    std::vector<std::string> effects; ///< chain entry names whose code is in it
+    std::shared_ptr<const ProgramSource> program;
+    std::vector<PassInput> inputs; ///< texture unit = index
+    std::vector<ImageRef> outputs; ///< all targets of one size
+    int width = 0, height = 0;
+    Format format = Format::rgba16f;       ///< of the first output
+    std::vector<std::byte> uniform_block;  ///< std140 bytes for binding 1
+};
+
+enum class EffectStatus { ran, fused, skipped };
+std::string_view status_name(EffectStatus status);
+
+/// What became of one entry of the chain.
+struct PlannedEffect {
+    std::string name; ///< chain entry
+    std::string id;   ///< effect
+    EffectStatus status = EffectStatus::ran;
+    std::string moment; ///< when skipped: "configuration" or "scene"
+    std::string kind;   ///< when skipped: "exact", "code", "visible"
+    std::string reason; ///< when skipped: why. Otherwise: with what it was fused, or why not with its neighbour
+};
+
+struct Plan {
+    int width = 0, height = 0;
+    std::vector<PlannedEffect> effects;
+    std::vector<std::string> attachments; ///< those that some pass reads; the host need not render others
+    std::vector<Target> targets;
+    std::vector<Pass> passes;
+    ImageRef picture; ///< the result: the last pass's target, or an attachment when nothing is left to do
+    std::vector<std::string> warnings;
+
+    std::size_t texture_bytes() const;
+};
+
+/// Makes plans. Keeps assembled shader texts between calls, so that a re-plan costs microseconds; apart from that the
+/// same chain and facts give the same plan.
+class Planner {
+public:
+    Planner();
+    ~Planner();
+    Planner(Planner&&) noexcept;
+    Planner& operator=(Planner&&) noexcept;
+
+    /// Throws Error naming the effect when it refuses its values or its plan is wrong.
+    Plan plan(const Chain& chain, const Facts& facts);
+
+private:
+    struct Memory;
+    std::unique_ptr<Memory> memory_;
+};
+
+} // namespace postfx

@@ -1,0 +1,420 @@
+// The C++ face of plugin.h: what an effect's author includes. Header only; links nothing.
+//
+//     static constexpr postfx::Parameter parameters[] = {
+//         postfx::number("strength", 0.4).range(0, 1).identity_at(0).about("How dark the corners get"),
+//     };
+//     static void plan(const postfx::Request& in, postfx::Builder& out) {
+//         if (in.number("strength") == 0) return out.identity("strength is 0");
+//         out.compose("shade.glsl");
+//     }
+//     static constexpr auto shade = postfx::effect<plan>("shade").about("Darkens the corners").with_parameters(parameters);
+//     POSTFX_MODULE(&shade)
+//
+// GLSL: a source `shade.glsl` defines one function named after the file. docs/write-an-effect.md has the whole story.
+//     compose    vec3 shade(vec3 color, Pixel pixel, ShadeParams params [, sampler2D for each reads()])
+//     fragment   vec4 blur_down(Pixel pixel, BlurDownParams params [, sampler2D ...])
+//     several outputs:  void blur_down(Pixel pixel, BlurDownParams params [, sampler2D ...], out vec4 a, out vec4 b)
+// The struct's members are the effect's dynamic parameters, then the numbers given by value() in their order.
+// Constant parameters and constant()s are GLSL constants in capitals: parameter `model` of effect `shade` is SHADE_MODEL.
+#pragma once
+
+#include "plugin.h"
+
+#include <cmath>
+#include <cstddef>
+#include <cstring>
+#include <exception>
+#include <initializer_list>
+#include <string>
+
+#if __has_include(<postfx_embedded_sources.h>)
+#include <postfx_embedded_sources.h> // made by postfx_add_effect() from the effect's *.glsl
+#endif
+
+namespace postfx {
+
+// ---- declaring parameters ------------------------------------------------------------------------------------------
+
+/// A postfx_parameter under construction; every call returns a changed copy.
+struct Parameter : postfx_parameter {
+    constexpr Parameter(const char* id, const char* kind) : postfx_parameter{} {
+        this->struct_size = sizeof(postfx_parameter);
+        this->id = id;
+        this->kind = kind;
+        this->unit = "";
+        this->help = "";
+        this->maximum = 1;
+    }
+    constexpr Parameter range(double minimum, double maximum, double step = 0) const {
+        Parameter changed = *this;
+        changed.minimum = minimum;
+        changed.maximum = maximum;
+        if (step > 0) changed.step = step;
+        return changed;
+    }
+    constexpr Parameter in_unit(const char* unit) const {
+        Parameter changed = *this;
+        changed.unit = unit;
+        return changed;
+    }
+    constexpr Parameter about(const char* help) const {
+        Parameter changed = *this;
+        changed.help = help;
+        return changed;
+    }
+    /// The value at which the whole effect is the identity (plan() must say so too).
+    constexpr Parameter identity_at(double value) const {
+        Parameter changed = *this;
+        changed.identity = value;
+        changed.flags |= POSTFX_PARAMETER_HAS_IDENTITY;
+        return changed;
+    }
+    /// Compile the value into the shader.
+    constexpr Parameter constant() const {
+        Parameter changed = *this;
+        changed.flags |= POSTFX_PARAMETER_CONSTANT;
+        return changed;
+    }
+    constexpr Parameter logarithmic() const {
+        Parameter changed = *this;
+        changed.flags |= POSTFX_PARAMETER_LOGARITHMIC;
+        return changed;
+    }
+};
+
+constexpr Parameter number(const char* id, double default_value) {
+    Parameter made(id, "float");
+    made.default_value[0] = default_value;
+    return made;
+}
+constexpr Parameter integer(const char* id, int default_value) {
+    Parameter made(id, "int");
+    made.default_value[0] = default_value;
+    made.step = 1;
+    return made;
+}
+constexpr Parameter toggle(const char* id, bool default_value) {
+    Parameter made(id, "bool");
+    made.default_value[0] = default_value ? 1 : 0;
+    made.step = 1;
+    return made;
+}
+/// Scene-linear RGB.
+constexpr Parameter color(const char* id, double red, double green, double blue) {
+    Parameter made(id, "color");
+    made.default_value[0] = red;
+    made.default_value[1] = green;
+    made.default_value[2] = blue;
+    return made;
+}
+/// `choices` must be static. The value is the index.
+template<std::size_t count>
+constexpr Parameter choice(const char* id, const char* const (&choices)[count], int default_value = 0) {
+    Parameter made(id, "choice");
+    made.default_value[0] = default_value;
+    made.maximum = static_cast<double>(count - 1);
+    made.step = 1;
+    made.choices = choices;
+    made.choice_count = count;
+    return made;
+}
+
+constexpr postfx_level level(const char* id, const char* help) {
+    return {sizeof(postfx_level), 0, id, help};
+}
+
+// ---- planning ------------------------------------------------------------------------------------------------------
+
+/// What the host asks: values, size, camera, what is there. Valid during plan().
+class Request {
+public:
+    explicit Request(const postfx_request& request) : request_(request) {}
+
+    /// A parameter's value. Asking for one that was not declared refuses the chain (a bug in the effect).
+    double number(const char* id) const { return values(id)[0]; }
+    int integer(const char* id) const { return static_cast<int>(std::lround(values(id)[0])); }
+    bool toggle(const char* id) const { return values(id)[0] != 0; }
+    /// Index of the chosen word.
+    int choice(const char* id) const { return integer(id); }
+    /// Three scene-linear values.
+    const double* color(const char* id) const { return values(id); }
+
+    int width() const { return static_cast<int>(request_.width); }
+    int height() const { return static_cast<int>(request_.height); }
+    /// Index into the effect's levels.
+    int level() const { return static_cast<int>(request_.level); }
+    const postfx_camera& camera() const { return *request_.camera; }
+    bool has(const char* attachment) const {
+        for (std::uint32_t i = 0; i < request_.attachment_count; ++i) {
+            if (std::strcmp(request_.attachments[i], attachment) == 0) return true;
+        }
+        return false;
+    }
+
+private:
+    struct Undeclared : std::exception {
+        explicit Undeclared(const char* id) : text(std::string("plan() asks for an undeclared parameter: ") + id) {}
+        const char* what() const noexcept override { return text.c_str(); }
+        std::string text;
+    };
+
+    const double* values(const char* id) const {
+        const auto* first = reinterpret_cast<const char*>(request_.effect->parameters);
+        for (std::uint32_t i = 0; i < request_.effect->parameter_count; ++i) {
+            const auto* parameter =
+                reinterpret_cast<const postfx_parameter*>(first + i * request_.effect->parameter_stride);
+            if (std::strcmp(parameter->id, id) == 0) return request_.values + 4 * i;
+        }
+        throw Undeclared(id);
+    }
+
+    const postfx_request& request_;
+};
+
+/// An image of the plan being made.
+struct PlanImage {
+    postfx_image handle = 0;
+    explicit operator bool() const { return handle != 0; }
+    /// The n-th output of the pass whose first output this is.
+    PlanImage output(std::uint32_t n) const { return {handle + n}; }
+};
+
+/// One declared pass. It is handed to the host when it is converted to a PlanImage or goes out of scope,
+/// whichever comes first; so write it as one expression.
+class Pass {
+public:
+    Pass(const postfx_builder& builder, const char* kind, const char* name, const char* source, std::uint32_t width,
+         std::uint32_t height)
+        : builder_(builder) {
+        pass_.struct_size = sizeof(postfx_pass);
+        pass_.kind = kind;
+        pass_.name = name;
+        pass_.source = source;
+        pass_.width = width;
+        pass_.height = height;
+        pass_.output_count = 1;
+    }
+    Pass(const Pass&) = delete;
+    Pass& operator=(const Pass&) = delete;
+    ~Pass() { commit(); }
+
+    /// Bind `image` to the function's next sampler argument. filter: "nearest" or "linear"; edges are clamped.
+    Pass& reads(const char* name, PlanImage image, const char* filter = "linear") {
+        if (pass_.input_count == max_inputs) return overflow("inputs");
+        inputs_[pass_.input_count++] = {sizeof(postfx_input), image.handle, name, filter};
+        return *this;
+    }
+    /// A number computed here: member `name` of the pass's parameter struct.
+    Pass& value(const char* name, double x) { return add_number(values_, pass_.value_count, name, "float", {x}); }
+    Pass& value(const char* name, double x, double y) {
+        return add_number(values_, pass_.value_count, name, "float", {x, y});
+    }
+    Pass& value(const char* name, double x, double y, double z) {
+        return add_number(values_, pass_.value_count, name, "float", {x, y, z});
+    }
+    Pass& value(const char* name, double x, double y, double z, double w) {
+        return add_number(values_, pass_.value_count, name, "float", {x, y, z, w});
+    }
+    Pass& int_value(const char* name, int x) { return add_number(values_, pass_.value_count, name, "int", {double(x)}); }
+    /// A number compiled in: GLSL `const int NAME` / `const float NAME`. Write NAME in capitals, with the effect's prefix.
+    Pass& constant(const char* name, int x) {
+        return add_number(constants_, pass_.constant_count, name, "int", {double(x)});
+    }
+    Pass& constant(const char* name, double x) {
+        return add_number(constants_, pass_.constant_count, name, "float", {x});
+    }
+    /// Size relative to the picture, rounded up, at least 1x1.
+    Pass& scale(double factor) { return sized(scaled(pass_.width, factor), scaled(pass_.height, factor)); }
+    /// Size relative to another image of this plan, rounded up, at least 1x1.
+    Pass& scale_of(PlanImage image, double factor) {
+        std::uint32_t width = 1, height = 1;
+        builder_.size(builder_.context, image.handle, &width, &height);
+        return sized(scaled(width, factor), scaled(height, factor));
+    }
+    Pass& sized(std::uint32_t width, std::uint32_t height) {
+        pass_.width = width;
+        pass_.height = height;
+        return *this;
+    }
+    /// One format word per output: "r8" "rg8" "rgba8" "r16f" "rg16f" "rgba16f" "r32f" "rg32f" "rgba32f" "r11g11b10f",
+    /// or "" for the chain's working format (the default, one output).
+    Pass& formats(std::initializer_list<const char*> words) {
+        pass_.output_count = 0;
+        for (const char* word : words) {
+            if (pass_.output_count == max_outputs) return overflow("outputs");
+            formats_[pass_.output_count++] = word;
+        }
+        return *this;
+    }
+    Pass& format(const char* word) { return formats({word}); }
+
+    operator PlanImage() { return {commit()}; }
+
+private:
+    static constexpr std::uint32_t max_inputs = 12, max_numbers = 32, max_outputs = 4;
+
+    static std::uint32_t scaled(std::uint32_t size, double factor) {
+        return static_cast<std::uint32_t>(std::fmax(1.0, std::ceil(size * factor)));
+    }
+    Pass& overflow(const char* what) {
+        builder_.refuse(builder_.context, (std::string(pass_.name) + " declares too many " + what).c_str());
+        return *this;
+    }
+    Pass& add_number(postfx_number* list, std::uint32_t& count, const char* name, const char* kind,
+                     std::initializer_list<double> components) {
+        if (count == max_numbers) return overflow("numbers");
+        postfx_number& added = list[count++];
+        added = {sizeof(postfx_number), static_cast<std::uint32_t>(components.size()), name, kind, {}};
+        std::size_t i = 0;
+        for (double component : components) added.value[i++] = component;
+        return *this;
+    }
+    postfx_image commit() {
+        if (!committed_) {
+            committed_ = true;
+            pass_.inputs = inputs_;
+            pass_.input_stride = sizeof(postfx_input);
+            pass_.values = values_;
+            pass_.value_stride = sizeof(postfx_number);
+            pass_.constants = constants_;
+            pass_.constant_stride = sizeof(postfx_number);
+            pass_.formats = formats_;
+            made_ = builder_.pass(builder_.context, &pass_);
+        }
+        return made_;
+    }
+
+    const postfx_builder& builder_;
+    postfx_pass pass_{};
+    postfx_input inputs_[max_inputs];
+    postfx_number values_[max_numbers];
+    postfx_number constants_[max_numbers];
+    const char* formats_[max_outputs] = {"", "", "", ""};
+    bool committed_ = false;
+    postfx_image made_ = 0;
+};
+
+/// What the effect answers: identity(), or passes and one compose().
+class Builder {
+public:
+    Builder(const postfx_builder& builder, const postfx_request& request) : builder_(builder), request_(request) {}
+
+    /// These values make the effect change nothing, bit for bit.
+    void identity(const char* reason) { builder_.identity(builder_.context, "configuration", "exact", reason); }
+    /// The scene does not call for the effect. kind: "exact", "code" (at most one 8-bit code) or "visible".
+    void not_called_for(const char* kind, const char* reason) {
+        builder_.identity(builder_.context, "scene", kind, reason);
+    }
+    /// These values can't be used together; `message` says why and what would do.
+    void refuse(const char* message) { builder_.refuse(builder_.context, message); }
+
+    /// The stored picture as it reaches this effect. A pass that reads it ends fusion with what comes before.
+    PlanImage color() { return {builder_.color(builder_.context)}; }
+    /// "depth", "normal", "emission", "ambient"; empty when the host has none.
+    PlanImage attachment(const char* name) { return {builder_.attachment(builder_.context, name)}; }
+
+    Pass pass(const char* name, const char* source) {
+        return {builder_, "fragment", name, source, request_.width, request_.height};
+    }
+    /// The effect's function of its own pixel; exactly one, declared last. If it reads color() as well, it samples the
+    /// stored picture at displaced points and can only stand first in a fused pass.
+    Pass compose(const char* source) {
+        return {builder_, "compose", "compose", source, request_.width, request_.height};
+    }
+
+private:
+    const postfx_builder& builder_;
+    const postfx_request& request_;
+};
+
+// ---- declaring the effect ------------------------------------------------------------------------------------------
+
+/// A postfx_effect under construction; every call returns a changed copy.
+struct Effect : postfx_effect {
+    constexpr explicit Effect(const char* id) : postfx_effect{} {
+        this->struct_size = sizeof(postfx_effect);
+        this->id = id;
+        this->version = "1.0.0";
+        this->help = "";
+        this->stage = "scene";
+    }
+    constexpr Effect about(const char* help) const {
+        Effect changed = *this;
+        changed.help = help;
+        return changed;
+    }
+    constexpr Effect versioned(const char* version) const {
+        Effect changed = *this;
+        changed.version = version;
+        return changed;
+    }
+    /// "scene" (default), "scene_to_display" or "display".
+    constexpr Effect at_stage(const char* stage) const {
+        Effect changed = *this;
+        changed.stage = stage;
+        return changed;
+    }
+    template<class P, std::size_t count>
+    constexpr Effect with_parameters(const P (&parameters)[count]) const {
+        Effect changed = *this;
+        changed.parameters = parameters;
+        changed.parameter_count = count;
+        changed.parameter_stride = sizeof(P);
+        return changed;
+    }
+    /// Attachments besides the chain's colour that plan() may ask for.
+    template<std::size_t count>
+    constexpr Effect reading(const char* const (&attachments)[count]) const {
+        Effect changed = *this;
+        changed.reads = attachments;
+        changed.read_count = count;
+        return changed;
+    }
+    template<std::size_t count>
+    constexpr Effect with_levels(const postfx_level (&levels)[count], std::uint32_t default_level) const {
+        Effect changed = *this;
+        changed.levels = levels;
+        changed.level_count = count;
+        changed.level_stride = sizeof(postfx_level);
+        changed.default_level = default_level;
+        return changed;
+    }
+};
+
+template<void (*plan)(const Request&, Builder&)>
+std::int32_t plan_entry(const postfx_request* request, const postfx_builder* builder) noexcept {
+    try {
+        Builder out(*builder, *request);
+        plan(Request(*request), out);
+        return 0;
+    } catch (const std::exception& error) {
+        builder->refuse(builder->context, error.what());
+    } catch (...) {
+        builder->refuse(builder->context, "plan() threw something that is no std::exception");
+    }
+    return 1;
+}
+
+template<void (*plan)(const Request&, Builder&)>
+constexpr Effect effect(const char* id) {
+    Effect made(id);
+    made.plan = plan_entry<plan>;
+    return made;
+}
+
+} // namespace postfx
+
+/// Export a module with the named effects (static constexpr postfx::Effect objects).
+#define POSTFX_MODULE(...)                                                                                             \
+    namespace {                                                                                                        \
+    constexpr const postfx_effect* postfx_module_effects[] = {__VA_ARGS__};                                            \
+    }                                                                                                                  \
+    extern "C" __attribute__((visibility("default"))) constinit const postfx_module postfx_module_v1 = {               \
+        sizeof(postfx_module),                                                                                         \
+        POSTFX_ABI_MAJOR,                                                                                              \
+        POSTFX_ABI_MINOR,                                                                                              \
+        sizeof(postfx_module_effects) / sizeof(postfx_module_effects[0]),                                              \
+        postfx_module_effects,                                                                                         \
+        postfx_embedded_sources,                                                                                       \
+        sizeof(postfx_embedded_sources) / sizeof(postfx_embedded_sources[0]),                                          \
+        sizeof(postfx_source)};

@@ -1,0 +1,40 @@
+// What a run did, why, and what it cost.
+#pragma once
+
+#include <postfx/plan.hpp>
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace postfx {
+
+struct PassReport {
+    std::string name;
+    std::vector<std::string> effects;
+    int width = 0, height = 0;
+    std::string format;
+    std::vector<std::string> reads; ///< names of what it samples: attachments, or the pass that wrote it
+    std::optional<double> cpu_ms;   ///< CPU time of all threads, profile mode
+    std::optional<double> wall_ms;  ///< profile mode
+    std::optional<double> gpu_ms;   ///< GL timestamps
+};
+
+struct Report {
+    std::vector<PlannedEffect> effects;
+    std::vector<PassReport> passes;
+    std::string clock; ///< which clock the times come from, and why that one
+    std::size_t texture_bytes = 0;
+    std::vector<std::string> warnings;
+};
+
+/// The plan's part of a report: everything but times.
+Report describe(const Plan& plan);
+
+/// {"effects": [{"id", "name", "status", "moment", "reason"}], "passes": [{"name", "effects", "width", "height",
+/// "format", "reads", "cpu_ms", "gpu_ms"}], "clock", "texture_bytes", "warnings"}; absent times are null.
+std::string report_json(const Report& report);
+/// The same for people.
+std::string report_text(const Report& report);
+
+} // namespace postfx

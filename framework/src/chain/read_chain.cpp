@@ -1,0 +1,1 @@
+#include <postfx/chain.hpp>

@@ -1,0 +1,1 @@
+#include <postfx/executor.hpp>

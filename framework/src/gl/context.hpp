@@ -1,0 +1,54 @@
+// OpenGL 4.5 core without a display, through EGL.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace postfx::gl {
+
+struct DeviceInfo {
+    std::string vendor, renderer, version;
+    std::string platform; ///< "EGL surfaceless", "EGL device 0 (/dev/dri/card0)", "GLFW"
+    bool software = false; ///< llvmpipe, softpipe, SwiftShader, ...: timer queries don't see draws
+};
+
+/// What the current context is. Needs a current context and loaded functions.
+DeviceInfo current_device();
+
+/// Load GL functions for the current context and check that it is 4.5 core; throws Error that says what was found and
+/// what to install. `loader` as in glad: void* (*)(const char*).
+void load_functions(void* (*loader)(const char*));
+
+/// A context of its own, current on this thread from construction on. Tries EGL devices with a GPU first, then Mesa
+/// surfaceless; POSTFX_GL=surfaceless|device forces one. KHR_debug output is on when `debug`.
+class HeadlessContext {
+public:
+    explicit HeadlessContext(bool debug = false);
+    ~HeadlessContext();
+    HeadlessContext(const HeadlessContext&) = delete;
+    HeadlessContext& operator=(const HeadlessContext&) = delete;
+
+    const DeviceInfo& device() const { return device_; }
+
+private:
+    struct State;
+    std::unique_ptr<State> state_;
+    DeviceInfo device_;
+};
+
+/// Collect KHR_debug messages above notification from now on, for the current context. Messages are kept (at most
+/// 1000) until taken.
+void enable_debug_output();
+std::vector<std::string> take_debug_messages();
+
+/// A named group around commands, for RenderDoc, apitrace and the debug output.
+class DebugGroup {
+public:
+    explicit DebugGroup(const char* name);
+    ~DebugGroup();
+    DebugGroup(const DebugGroup&) = delete;
+    DebugGroup& operator=(const DebugGroup&) = delete;
+};
+
+} // namespace postfx::gl

@@ -1,0 +1,92 @@
+// Owners of GL objects, direct state access throughout. Move-only; an empty one has name 0. [GL thread]
+#pragma once
+
+#include <postfx/format.hpp>
+#include <postfx/image.hpp>
+
+#include <glad/gl.h>
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace postfx::gl {
+
+/// Owns one GL name; `destroy` is the matching glDelete.
+template<void (*destroy)(GLuint)>
+class Handle {
+public:
+    Handle() = default;
+    explicit Handle(GLuint name) : name_(name) {}
+    Handle(Handle&& other) noexcept : name_(std::exchange(other.name_, 0)) {}
+    Handle& operator=(Handle&& other) noexcept {
+        std::swap(name_, other.name_);
+        return *this;
+    }
+    ~Handle() {
+        if (name_) destroy(name_);
+    }
+    GLuint name() const { return name_; }
+    explicit operator bool() const { return name_ != 0; }
+
+private:
+    GLuint name_ = 0;
+};
+
+void destroy_texture(GLuint name);
+void destroy_framebuffer(GLuint name);
+void destroy_buffer(GLuint name);
+void destroy_vertex_array(GLuint name);
+void destroy_program(GLuint name);
+void destroy_query(GLuint name);
+void destroy_sampler(GLuint name);
+
+using Framebuffer = Handle<destroy_framebuffer>;
+using Buffer = Handle<destroy_buffer>;
+using VertexArray = Handle<destroy_vertex_array>;
+using Program = Handle<destroy_program>;
+using Query = Handle<destroy_query>;
+using Sampler = Handle<destroy_sampler>;
+
+GLenum internal_format(Format format);
+
+/// A 2D texture with immutable storage, clamped at its edges, nearest filtering (samplers override it).
+class Texture : public Handle<destroy_texture> {
+public:
+    Texture() = default;
+    /// glTextureStorage2D. `levels` mip levels.
+    Texture(int width, int height, Format format, int levels = 1);
+
+    int width() const { return width_; }
+    int height() const { return height_; }
+    Format format() const { return format_; }
+
+    /// Upload level 0; the image's channel count must be the format's (extra channels of the format become 0, alpha 1).
+    void upload(const Image& image);
+
+private:
+    int width_ = 0, height_ = 0;
+    Format format_ = Format::rgba8;
+};
+
+/// Level 0 of any 2D texture as floats, with the channels of its format. Waits for the GPU. NaN payloads survive for
+/// 32F formats.
+Image read_texture(GLuint texture, int width, int height, Format format);
+/// rgba8 codes, bottom row first.
+std::vector<unsigned char> read_texture_codes(GLuint texture, int width, int height, int channels);
+
+/// glCreateFramebuffers with these colour attachments and, if not 0, depth; checked for completeness.
+Framebuffer make_framebuffer(const std::vector<GLuint>& colors, GLuint depth = 0);
+Buffer make_buffer(std::size_t bytes, const void* data, GLbitfield flags = GL_DYNAMIC_STORAGE_BIT);
+VertexArray make_vertex_array();
+/// Clamp to edge; linear or nearest, no mips.
+Sampler make_sampler(bool linear);
+
+/// Compile and link. Throws Error: place.file:line from the first message in the driver's log, mapped through `files`
+/// (#line source-string number -> file name); `what` names the program.
+Program make_program(std::string_view vertex, std::string_view fragment, const std::string& what,
+                     const std::vector<std::string>& files = {});
+
+} // namespace postfx::gl

@@ -1,0 +1,1 @@
+#include <postfx/catalog.hpp>
