@@ -13,18 +13,21 @@ namespace postfx::testing {
 
 /// What goes into one effect. Absent attachments are left out of the map.
 struct Input {
-    Image color;                              ///< 3 or 4 channels, scene-linear
-    std::map<std::string, Image> attachments; ///< "depth" (1 channel, raw samples), "normal" (3), "emission" (3), ...
+    Image color; ///< 3 or 4 channels, scene-linear
+    std::map<std::string, Image>
+        attachments; ///< "depth" (1 channel, raw samples), "normal" (3), "emission" (3), ...
     Camera camera;
     double time = 0;
     std::uint32_t frame = 0;
     std::uint32_t seed = 0;
 };
 
-/// Parameter values by id; a choice by its index. What is not named has its default. "quality" is the level's index.
+/// Parameter values by id; a choice by its index. What is not named has its default. "quality" is the level's
+/// index.
 using Values = std::map<std::string, double>;
 
-/// Is there a GL 4.5 context on this machine? If not, `why` says what was found; GL tests then print it and skip.
+/// Is there a GL 4.5 context on this machine? If not, `why` says what was found; GL tests then print it and
+/// skip.
 bool has_gl(std::string* why = nullptr);
 
 /// Run one effect, in rgba32f working targets unless told otherwise; the result has 4 channels.
@@ -39,7 +42,8 @@ Image run_chain(const std::string& yaml, const Input& input, Format working_form
 /// The plan of one effect for that input (no GL).
 Plan plan_effect(const std::string& effect, const Input& input, const Values& values = {});
 
-/// Everything that a reference needs, as plain numbers. `values` holds every declared parameter (colors: id.0 .1 .2).
+/// Everything that a reference needs, as plain numbers. `values` holds every declared parameter (colors: id.0
+/// .1 .2).
 struct ReferenceInput {
     Image64 color;
     std::map<std::string, Image64> attachments;
@@ -53,11 +57,12 @@ struct ReferenceInput {
 /// The float64 reference's input for the same effect, input and values.
 ReferenceInput reference_input(const std::string& effect, const Input& input, const Values& values = {});
 
-/// Defined by the effect's reference.cpp: the same model, pixel by pixel in float64, sharing no code with the GLSL.
-/// Returns 3 channels.
+/// Defined by the effect's reference.cpp: the same model, pixel by pixel in float64, sharing no code with the
+/// GLSL. Returns 3 channels.
 Image64 reference(const ReferenceInput& input);
 
-// ---- pictures to test on -------------------------------------------------------------------------------------------
+// ---- pictures to test on
+// -------------------------------------------------------------------------------------------
 
 Image constant(int width, int height, std::vector<float> value);
 /// Reproducible noise in [low, high], 3 channels.
@@ -65,7 +70,8 @@ Image noise(int width, int height, float low, float high, std::uint32_t seed = 1
 /// Black with one pixel of that value.
 Image impulse(int width, int height, int x, int y, float value);
 
-// ---- comparing -----------------------------------------------------------------------------------------------------
+// ---- comparing
+// -----------------------------------------------------------------------------------------------------
 
 struct Worst {
     double absolute = 0; ///< largest |a - b|
@@ -77,9 +83,10 @@ Worst worst_difference(const Image& result, const Image64& expected);
 /// Same bits in the first 3 channels, -0 and NaN payloads included.
 bool same_bits(const Image& a, const Image& b);
 
-/// Compare with golden/<name>.png beside the test (sRGB codes). Fails with the numbers; writes the new picture to the
-/// build directory. POSTFX_UPDATE_GOLDEN=1 rewrites the file instead and says so. `reason` says why the tolerance.
-void check_golden(const std::string& directory, const std::string& name, const Image& display_linear, int max_codes,
-                  double max_differing_fraction, const std::string& reason);
+/// Compare with golden/<name>.png beside the test (sRGB codes). Fails with the numbers; writes the new
+/// picture to the build directory. POSTFX_UPDATE_GOLDEN=1 rewrites the file instead and says so. `reason`
+/// says why the tolerance.
+void check_golden(const std::string& directory, const std::string& name, const Image& display_linear,
+                  int max_codes, double max_differing_fraction, const std::string& reason);
 
 } // namespace postfx::testing

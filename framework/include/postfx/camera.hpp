@@ -6,17 +6,19 @@
 
 namespace postfx {
 
-/// Depth samples are affine in 1/z (perspective) or in z (orthographic), where z > 0 is metres along the view axis:
+/// Depth samples are affine in 1/z (perspective) or in z (orthographic), where z > 0 is metres along the view
+/// axis:
 ///     perspective:   1/z = depth_scale * d + depth_offset
 ///     orthographic:    z = depth_scale * d + depth_offset
-/// so no shader divides by zero at the sky (1/z = 0) and every convention (standard, reversed, infinite) is two numbers.
+/// so no shader divides by zero at the sky (1/z = 0) and every convention (standard, reversed, infinite) is
+/// two numbers.
 struct Camera {
     bool orthographic = false;
     double vertical_fov = 45.0;    ///< degrees, perspective only
     double vertical_extent = 10.0; ///< metres that the picture's height spans, orthographic only
     double near_plane = 0.1;       ///< metres
     double far_plane = std::numeric_limits<double>::infinity(); ///< metres
-    double depth_scale = 10.0;     ///< see above; default is reversed-Z with infinite far plane, d = near / z
+    double depth_scale = 10.0; ///< see above; default is reversed-Z with infinite far plane, d = near / z
     double depth_offset = 0.0;
     double sky_depth = 0.0; ///< the raw sample that means "nothing there"; compared exactly, never linearised
 

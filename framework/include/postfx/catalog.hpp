@@ -46,8 +46,9 @@ struct LevelInfo {
 struct SourceInfo {
     std::string name;
     std::string text;
-    std::string path;         ///< where it was at build time, may be empty
-    std::string not_pointwise; ///< why it can't be a compose function; empty = nothing forbidden was found in it
+    std::string path; ///< where it was at build time, may be empty
+    std::string
+        not_pointwise; ///< why it can't be a compose function; empty = nothing forbidden was found in it
 };
 
 /// One effect as found. Immutable; shared by chains and plans that use it.
@@ -75,13 +76,14 @@ using EffectPtr = std::shared_ptr<const EffectInfo>;
 /// Effects by id, in alphabetical order.
 class Catalog {
 public:
-    /// Where plugins are looked for, first hit by effect id wins: `first` (--plugin-dir), then POSTFX_PLUGIN_PATH, the
-    /// user's data directory, the install prefix or build tree relative to the library. Never the current directory:
-    /// empty, relative or world-writable entries are refused with a note.
+    /// Where plugins are looked for, first hit by effect id wins: `first` (--plugin-dir), then
+    /// POSTFX_PLUGIN_PATH, the user's data directory, the install prefix or build tree relative to the
+    /// library. Never the current directory: empty, relative or world-writable entries are refused with a
+    /// note.
     static Catalog discover(const std::vector<std::filesystem::path>& first = {});
 
-    /// Open one module and add its effects. Throws Error when it is not a plugin, has another major version or
-    /// declares something wrong; the message names file, effect and field.
+    /// Open one module and add its effects. Throws Error when it is not a plugin, has another major version
+    /// or declares something wrong; the message names file, effect and field.
     void load(const std::filesystem::path& module);
     /// Check a module's declarations and add its effects, without opening anything. `origin` is for messages.
     void add(const postfx_module& module, const std::filesystem::path& origin);

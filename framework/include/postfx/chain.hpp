@@ -3,6 +3,7 @@
 
 #include <postfx/catalog.hpp>
 
+#include <cstddef>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -12,12 +13,14 @@ namespace postfx {
 /// One effect of a chain with its values.
 struct ChainEntry {
     EffectPtr effect;
-    std::string name; ///< unique in the chain: the effect's id, or what `name:` says; the second bloom is "bloom_2"
+    /// Unique in the chain: the effect's id, "<id>_2" for the second of the same effect, or what `name:` says.
+    std::string name;
     bool enabled = true;
     int level = 0;             ///< index into effect->levels
     std::vector<Value> values; ///< one per parameter of the effect, within range
 
-    /// Set a value; out of range it is clamped and false is returned. Throws Error for an unknown parameter.
+    /// Set a value (all channels of a color); ints, toggles and choices are rounded. Out of range it is clamped and
+    /// false is returned; NaN changes nothing and returns false. Throws Error for an unknown parameter.
     bool set(std::string_view parameter, double value);
 };
 
@@ -30,20 +33,28 @@ struct Chain {
     ChainEntry* find(std::string_view name);
 };
 
+/// Effects in one chain file with its includes; more is refused.
+inline constexpr std::size_t max_chain_entries = 256;
+
 /// Read a chain file. Throws Error with file:line:column, what was expected and the nearest name.
 ///
-///     include: default.yaml            # optional; another chain, relative to this file
-///     overrides: {grain: {amount: 0}}  # optional; by entry name, values (and enabled, quality) of included entries
-///     effects:
-///       - vignette                     # with its defaults
+///     include: default.yaml      # another chain, relative to this file; its effects come first
+///     overrides:                 # by entry name: values, enabled and quality of included effects
+///       grain: {amount: 0}
+///     effects:                   # optional when include is there
+///       - vignette               # with its defaults
 ///       - bloom: {intensity: 0.2, quality: high, enabled: true, name: glow}
+///
+/// A file is UTF-8 of at most 1 MiB, nested at most 16 deep, without YAML's anchors, aliases, merge keys and tags; at
+/// most 16 files include each other. Lines and columns count from 1, columns in characters.
 Chain read_chain(const std::filesystem::path& file, const Catalog& catalog);
 
 /// The same from text; `origin` names it in messages and anchors relative includes.
 Chain parse_chain(const std::string& yaml, const std::filesystem::path& origin, const Catalog& catalog);
 
 /// One item of `effects:`, e.g. "bloom: {intensity: 0.2}" or "vignette", appended to `chain`.
-void parse_chain_entry(const std::string& yaml, const std::string& origin, const Catalog& catalog, Chain& chain);
+void parse_chain_entry(const std::string& yaml, const std::string& origin, const Catalog& catalog,
+                       Chain& chain);
 
 /// JSON Schema (draft 2020-12) of the chain file, from the effects found; as text with 2-space indent.
 std::string chain_schema(const Catalog& catalog);

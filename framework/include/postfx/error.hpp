@@ -8,21 +8,22 @@
 
 namespace postfx {
 
-/// Where something went wrong. Every part is optional: a file problem has `file` (and `line`, `column` when the
-/// file is text; both count from 1, 0 = unknown), a problem of a running chain has `effect` and perhaps `pass`.
+/// Where something went wrong. Every part is optional: a file problem has `file` (and `line`, `column` when
+/// the file is text; both count from 1, 0 = unknown), a problem of a running chain has `effect` and perhaps
+/// `pass`.
 struct Place {
-    std::string file;
+    std::string file{};
     int line = 0;
     int column = 0;
-    std::string effect;
-    std::string pass;
+    std::string effect{};
+    std::string pass{};
 
     /// "chain.yaml:14:9", "bloom/downsample", "picture.exr" or "".
     std::string text() const;
 };
 
-/// What went wrong, where, in one line: "chain.yaml:14:9: bloom has no parameter "intensty"; did you mean ...".
-/// `what()` is that whole line.
+/// What went wrong, where, in one line: "chain.yaml:14:9: bloom has no parameter "intensty"; did you mean
+/// ...". `what()` is that whole line.
 class Error : public std::runtime_error {
 public:
     explicit Error(const std::string& message) : Error(Place{}, message) {}

@@ -24,7 +24,8 @@ struct FrameInputs {
 enum class Timing {
     off,
     gpu,     ///< GL timestamps, read some frames late
-    profile, ///< CPU time of all threads and wall time, with glFinish around every pass: honest on software GL
+    profile, ///< CPU time of all threads and wall time, with glFinish around every pass: honest on software
+             ///< GL
 };
 
 class Executor {
@@ -35,12 +36,13 @@ public:
     Executor(Executor&&) noexcept;
     Executor& operator=(Executor&&) noexcept;
 
-    /// Compile and allocate what `plan` needs and make it current. If a shader fails, throws Error with effect, file
-    /// and line, and the plan before stays current.
+    /// Compile and allocate what `plan` needs and make it current. If a shader fails, throws Error with
+    /// effect, file and line, and the plan before stays current.
     void prepare(const Plan& plan);
 
-    /// Draw the current plan. Creates no GL object and allocates no heap memory once it has run twice after prepare().
-    /// Returns the GL name of the picture's texture: the executor's own, valid until the next call, or an input.
+    /// Draw the current plan. Creates no GL object and allocates no heap memory once it has run twice after
+    /// prepare(). Returns the GL name of the picture's texture: the executor's own, valid until the next
+    /// call, or an input.
     std::uint32_t run(const FrameInputs& inputs, Timing timing = Timing::off);
 
     /// What the last run did and cost.

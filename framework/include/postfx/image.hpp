@@ -7,9 +7,9 @@
 
 namespace postfx {
 
-/// A picture of interleaved channels. Row 0 is the BOTTOM row (as OpenGL counts), column 0 the left one; file readers
-/// and writers turn the rows of top-down formats round. Values are whatever the picture means: scene-linear light,
-/// depth, normals; nothing is clamped.
+/// A picture of interleaved channels. Row 0 is the BOTTOM row (as OpenGL counts), column 0 the left one; file
+/// readers and writers turn the rows of top-down formats round. Values are whatever the picture means:
+/// scene-linear light, depth, normals; nothing is clamped.
 template<class Number>
 struct BasicImage {
     int width = 0;
@@ -40,7 +40,8 @@ using Image64 = BasicImage<double>; ///< for references and truths
 template<class To, class From>
 BasicImage<To> convert(const BasicImage<From>& from) {
     BasicImage<To> to(from.width, from.height, from.channels);
-    for (std::size_t i = 0; i < from.values.size(); ++i) to.values[i] = static_cast<To>(from.values[i]);
+    for (std::size_t i = 0; i < from.values.size(); ++i)
+        to.values[i] = static_cast<To>(from.values[i]);
     return to;
 }
 

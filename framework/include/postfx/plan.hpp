@@ -26,8 +26,9 @@ struct Facts {
     std::vector<std::string> attachments = {"color"}; ///< what can be provided, in any order
     Format working_format = Format::rgba16f;
     Output output = Output::display;
-    bool color_is_8bit = false; ///< the picture came as 8-bit codes: with nothing to do, they are not dithered
-    bool fuse = true;           ///< false: every effect writes its own target
+    bool color_is_8bit =
+        false;        ///< the picture came as 8-bit codes: with nothing to do, they are not dithered
+    bool fuse = true; ///< false: every effect writes its own target
 };
 
 /// A texture that a pass reads or writes: an attachment of the scene, or a target of the plan.
@@ -44,7 +45,8 @@ struct Target {
     std::size_t bytes() const;
 };
 
-/// A whole fragment shader with the files that its `#line` numbers refer to. Shared by plans; `key` names its text.
+/// A whole fragment shader with the files that its `#line` numbers refer to. Shared by plans; `key` names its
+/// text.
 struct ProgramSource {
     std::string text;
     std::vector<std::string> files; ///< by source-string number
@@ -64,8 +66,8 @@ struct Pass {
     std::vector<PassInput> inputs; ///< texture unit = index
     std::vector<ImageRef> outputs; ///< all targets of one size
     int width = 0, height = 0;
-    Format format = Format::rgba16f;       ///< of the first output
-    std::vector<std::byte> uniform_block;  ///< std140 bytes for binding 1
+    Format format = Format::rgba16f;      ///< of the first output
+    std::vector<std::byte> uniform_block; ///< std140 bytes for binding 1
 };
 
 enum class EffectStatus { ran, fused, skipped };
@@ -78,7 +80,8 @@ struct PlannedEffect {
     EffectStatus status = EffectStatus::ran;
     std::string moment; ///< when skipped: "configuration" or "scene"
     std::string kind;   ///< when skipped: "exact", "code", "visible"
-    std::string reason; ///< when skipped: why. Otherwise: with what it was fused, or why not with its neighbour
+    std::string
+        reason; ///< when skipped: why. Otherwise: with what it was fused, or why not with its neighbour
 };
 
 struct Plan {
@@ -93,8 +96,8 @@ struct Plan {
     std::size_t texture_bytes() const;
 };
 
-/// Makes plans. Keeps assembled shader texts between calls, so that a re-plan costs microseconds; apart from that the
-/// same chain and facts give the same plan.
+/// Makes plans. Keeps assembled shader texts between calls, so that a re-plan costs microseconds; apart from
+/// that the same chain and facts give the same plan.
 class Planner {
 public:
     Planner();

@@ -1,11 +1,13 @@
 /* postfx plugin ABI, major version 1. C11, also valid C++.
  *
- * A plugin is a shared object that exports ONE constant, `postfx_module_v1`, and nothing else. It never calls OpenGL,
- * allocates nothing for the host and keeps no state. C++ authors use <postfx/plugin.hpp>, which fills these structs in.
+ * A plugin is a shared object that exports ONE constant, `postfx_module_v1`, and nothing else. It never calls
+ * OpenGL, allocates nothing for the host and keeps no state. C++ authors use <postfx/plugin.hpp>, which fills
+ * these structs in.
  *
  * Rules that hold for every struct here:
- *  - the first member is struct_size = sizeof(the struct) as its writer knew it. Fields are only ever appended. A reader
- *    that finds a smaller size takes zero for what is missing; arrays carry their own stride for the same reason.
+ *  - the first member is struct_size = sizeof(the struct) as its writer knew it. Fields are only ever
+ * appended. A reader that finds a smaller size takes zero for what is missing; arrays carry their own stride
+ * for the same reason.
  *  - only fixed-width integers, doubles and pointers; strings are UTF-8, static, zero-terminated.
  *  - kinds and formats are words. A host that does not know a word refuses that effect and names the word.
  *  - no exception crosses; the host copies what it keeps.
@@ -26,14 +28,16 @@ extern "C" {
 
 /* Parameter flags. */
 #define POSTFX_PARAMETER_CONSTANT 1u     /* compiled into the shader; changing it compiles another program */
-#define POSTFX_PARAMETER_HAS_IDENTITY 2u /* `identity` is the value at which the whole effect does nothing */
+#define POSTFX_PARAMETER_HAS_IDENTITY 2u /* `identity` is the value at which the whole effect does nothing   \
+                                          */
 #define POSTFX_PARAMETER_LOGARITHMIC 4u  /* sliders should move in ratios */
 
 typedef struct postfx_parameter {
     uint32_t struct_size;
     uint32_t flags;
-    const char* id;   /* [a-z][a-z0-9_]*, unique in the effect; not enabled, quality, name */
-    const char* kind; /* "float", "int", "bool", "choice" (value = index), "color" (scene-linear RGB, 3 values) */
+    const char* id; /* [a-z][a-z0-9_]*, unique in the effect; not enabled, quality, name */
+    const char*
+        kind; /* "float", "int", "bool", "choice" (value = index), "color" (scene-linear RGB, 3 values) */
     const char* unit; /* "m", "mm", "px", "deg", "stops", "height" (fraction of picture height), ... or "" */
     const char* help; /* one line */
     double default_value[4];
@@ -96,7 +100,7 @@ typedef struct postfx_input {
 /* A number that plan() computed: a member of the pass's parameter struct, or a constant compiled in. */
 typedef struct postfx_number {
     uint32_t struct_size;
-    uint32_t count;     /* 1..4 components */
+    uint32_t count; /* 1..4 components */
     const char* name;
     const char* kind; /* "float" or "int" */
     double value[4];
@@ -105,7 +109,8 @@ typedef struct postfx_number {
 typedef struct postfx_pass {
     uint32_t struct_size;
     uint32_t reserved;
-    const char* kind;   /* "fragment", or "compose": the effect's function of its own pixel (exactly one, last) */
+    const char*
+        kind; /* "fragment", or "compose": the effect's function of its own pixel (exactly one, last) */
     const char* name;   /* unique within the effect's plan, for reports; may repeat the source's stem */
     const char* source; /* a postfx_source of this module */
     const postfx_input* inputs;
@@ -125,8 +130,8 @@ typedef struct postfx_builder {
     uint32_t struct_size;
     uint32_t reserved;
     void* context;
-    /* The effect changes nothing now. moment: "configuration" or "scene". kind: "exact" (E0), "code" (E1: at most one
-       8-bit code), "visible" (E2). Call this INSTEAD of declaring passes. */
+    /* The effect changes nothing now. moment: "configuration" or "scene". kind: "exact" (E0), "code" (E1: at
+       most one 8-bit code), "visible" (E2). Call this INSTEAD of declaring passes. */
     void (*identity)(void* context, const char* moment, const char* kind, const char* reason);
     /* These values can't be used together; the chain is refused with this message. */
     void (*refuse)(void* context, const char* message);
@@ -134,7 +139,8 @@ typedef struct postfx_builder {
     postfx_image (*color)(void* context);
     /* An attachment of the scene by name; 0 when the host has none of that name. */
     postfx_image (*attachment)(void* context, const char* name);
-    /* Declare a pass. Returns the image of its first output (the others follow consecutively); 0 for "compose". */
+    /* Declare a pass. Returns the image of its first output (the others follow consecutively); 0 for
+     * "compose". */
     postfx_image (*pass)(void* context, const postfx_pass* pass);
     /* Size of an image of this plan, pixels. */
     void (*size)(void* context, postfx_image image, uint32_t* width, uint32_t* height);
@@ -146,10 +152,11 @@ typedef struct postfx_effect {
     const char* id;      /* [a-z][a-z0-9_]* */
     const char* version; /* "1.0.0" */
     const char* help;    /* one line */
-    const char* stage;   /* "scene" (works on scene-linear light), "scene_to_display" (a tone map), "display" */
+    const char* stage; /* "scene" (works on scene-linear light), "scene_to_display" (a tone map), "display" */
     const postfx_parameter* parameters;
     uint32_t parameter_count, parameter_stride;
-    const char* const* reads; /* attachments besides the chain's colour that it may read: "depth", "normal", ... */
+    const char* const*
+        reads; /* attachments besides the chain's colour that it may read: "depth", "normal", ... */
     uint32_t read_count;
     uint32_t default_level; /* index into levels */
     const postfx_level* levels;

@@ -7,15 +7,18 @@
 //         if (in.number("strength") == 0) return out.identity("strength is 0");
 //         out.compose("shade.glsl");
 //     }
-//     static constexpr auto shade = postfx::effect<plan>("shade").about("Darkens the corners").with_parameters(parameters);
-//     POSTFX_MODULE(&shade)
+//     static constexpr auto shade = postfx::effect<plan>("shade").about("Darkens the
+//     corners").with_parameters(parameters); POSTFX_MODULE(&shade)
 //
-// GLSL: a source `shade.glsl` defines one function named after the file. docs/write-an-effect.md has the whole story.
+// GLSL: a source `shade.glsl` defines one function named after the file. docs/write-an-effect.md has the
+// whole story.
 //     compose    vec3 shade(vec3 color, Pixel pixel, ShadeParams params [, sampler2D for each reads()])
 //     fragment   vec4 blur_down(Pixel pixel, BlurDownParams params [, sampler2D ...])
-//     several outputs:  void blur_down(Pixel pixel, BlurDownParams params [, sampler2D ...], out vec4 a, out vec4 b)
+//     several outputs:  void blur_down(Pixel pixel, BlurDownParams params [, sampler2D ...], out vec4 a, out
+//     vec4 b)
 // The struct's members are the effect's dynamic parameters, then the numbers given by value() in their order.
-// Constant parameters and constant()s are GLSL constants in capitals: parameter `model` of effect `shade` is SHADE_MODEL.
+// Constant parameters and constant()s are GLSL constants in capitals: parameter `model` of effect `shade` is
+// SHADE_MODEL.
 #pragma once
 
 #include "plugin.h"
@@ -33,7 +36,8 @@
 
 namespace postfx {
 
-// ---- declaring parameters ------------------------------------------------------------------------------------------
+// ---- declaring parameters
+// ------------------------------------------------------------------------------------------
 
 /// A postfx_parameter under construction; every call returns a changed copy.
 struct Parameter : postfx_parameter {
@@ -123,7 +127,8 @@ constexpr postfx_level level(const char* id, const char* help) {
     return {sizeof(postfx_level), 0, id, help};
 }
 
-// ---- planning ------------------------------------------------------------------------------------------------------
+// ---- planning
+// ------------------------------------------------------------------------------------------------------
 
 /// What the host asks: values, size, camera, what is there. Valid during plan().
 class Request {
@@ -153,7 +158,8 @@ public:
 
 private:
     struct Undeclared : std::exception {
-        explicit Undeclared(const char* id) : text(std::string("plan() asks for an undeclared parameter: ") + id) {}
+        explicit Undeclared(const char* id)
+            : text(std::string("plan() asks for an undeclared parameter: ") + id) {}
         const char* what() const noexcept override { return text.c_str(); }
         std::string text;
     };
@@ -183,8 +189,8 @@ struct PlanImage {
 /// whichever comes first; so write it as one expression.
 class Pass {
 public:
-    Pass(const postfx_builder& builder, const char* kind, const char* name, const char* source, std::uint32_t width,
-         std::uint32_t height)
+    Pass(const postfx_builder& builder, const char* kind, const char* name, const char* source,
+         std::uint32_t width, std::uint32_t height)
         : builder_(builder) {
         pass_.struct_size = sizeof(postfx_pass);
         pass_.kind = kind;
@@ -198,14 +204,17 @@ public:
     Pass& operator=(const Pass&) = delete;
     ~Pass() { commit(); }
 
-    /// Bind `image` to the function's next sampler argument. filter: "nearest" or "linear"; edges are clamped.
+    /// Bind `image` to the function's next sampler argument. filter: "nearest" or "linear"; edges are
+    /// clamped.
     Pass& reads(const char* name, PlanImage image, const char* filter = "linear") {
         if (pass_.input_count == max_inputs) return overflow("inputs");
         inputs_[pass_.input_count++] = {sizeof(postfx_input), image.handle, name, filter};
         return *this;
     }
     /// A number computed here: member `name` of the pass's parameter struct.
-    Pass& value(const char* name, double x) { return add_number(values_, pass_.value_count, name, "float", {x}); }
+    Pass& value(const char* name, double x) {
+        return add_number(values_, pass_.value_count, name, "float", {x});
+    }
     Pass& value(const char* name, double x, double y) {
         return add_number(values_, pass_.value_count, name, "float", {x, y});
     }
@@ -215,8 +224,11 @@ public:
     Pass& value(const char* name, double x, double y, double z, double w) {
         return add_number(values_, pass_.value_count, name, "float", {x, y, z, w});
     }
-    Pass& int_value(const char* name, int x) { return add_number(values_, pass_.value_count, name, "int", {double(x)}); }
-    /// A number compiled in: GLSL `const int NAME` / `const float NAME`. Write NAME in capitals, with the effect's prefix.
+    Pass& int_value(const char* name, int x) {
+        return add_number(values_, pass_.value_count, name, "int", {double(x)});
+    }
+    /// A number compiled in: GLSL `const int NAME` / `const float NAME`. Write NAME in capitals, with the
+    /// effect's prefix.
     Pass& constant(const char* name, int x) {
         return add_number(constants_, pass_.constant_count, name, "int", {double(x)});
     }
@@ -236,8 +248,8 @@ public:
         pass_.height = height;
         return *this;
     }
-    /// One format word per output: "r8" "rg8" "rgba8" "r16f" "rg16f" "rgba16f" "r32f" "rg32f" "rgba32f" "r11g11b10f",
-    /// or "" for the chain's working format (the default, one output).
+    /// One format word per output: "r8" "rg8" "rgba8" "r16f" "rg16f" "rgba16f" "r32f" "rg32f" "rgba32f"
+    /// "r11g11b10f", or "" for the chain's working format (the default, one output).
     Pass& formats(std::initializer_list<const char*> words) {
         pass_.output_count = 0;
         for (const char* word : words) {
@@ -266,7 +278,8 @@ private:
         postfx_number& added = list[count++];
         added = {sizeof(postfx_number), static_cast<std::uint32_t>(components.size()), name, kind, {}};
         std::size_t i = 0;
-        for (double component : components) added.value[i++] = component;
+        for (double component : components)
+            added.value[i++] = component;
         return *this;
     }
     postfx_image commit() {
@@ -297,10 +310,13 @@ private:
 /// What the effect answers: identity(), or passes and one compose().
 class Builder {
 public:
-    Builder(const postfx_builder& builder, const postfx_request& request) : builder_(builder), request_(request) {}
+    Builder(const postfx_builder& builder, const postfx_request& request)
+        : builder_(builder), request_(request) {}
 
     /// These values make the effect change nothing, bit for bit.
-    void identity(const char* reason) { builder_.identity(builder_.context, "configuration", "exact", reason); }
+    void identity(const char* reason) {
+        builder_.identity(builder_.context, "configuration", "exact", reason);
+    }
     /// The scene does not call for the effect. kind: "exact", "code" (at most one 8-bit code) or "visible".
     void not_called_for(const char* kind, const char* reason) {
         builder_.identity(builder_.context, "scene", kind, reason);
@@ -316,8 +332,8 @@ public:
     Pass pass(const char* name, const char* source) {
         return {builder_, "fragment", name, source, request_.width, request_.height};
     }
-    /// The effect's function of its own pixel; exactly one, declared last. If it reads color() as well, it samples the
-    /// stored picture at displaced points and can only stand first in a fused pass.
+    /// The effect's function of its own pixel; exactly one, declared last. If it reads color() as well, it
+    /// samples the stored picture at displaced points and can only stand first in a fused pass.
     Pass compose(const char* source) {
         return {builder_, "compose", "compose", source, request_.width, request_.height};
     }
@@ -327,7 +343,8 @@ private:
     const postfx_request& request_;
 };
 
-// ---- declaring the effect ------------------------------------------------------------------------------------------
+// ---- declaring the effect
+// ------------------------------------------------------------------------------------------
 
 /// A postfx_effect under construction; every call returns a changed copy.
 struct Effect : postfx_effect {
@@ -405,16 +422,16 @@ constexpr Effect effect(const char* id) {
 } // namespace postfx
 
 /// Export a module with the named effects (static constexpr postfx::Effect objects).
-#define POSTFX_MODULE(...)                                                                                             \
-    namespace {                                                                                                        \
-    constexpr const postfx_effect* postfx_module_effects[] = {__VA_ARGS__};                                            \
-    }                                                                                                                  \
-    extern "C" __attribute__((visibility("default"))) constinit const postfx_module postfx_module_v1 = {               \
-        sizeof(postfx_module),                                                                                         \
-        POSTFX_ABI_MAJOR,                                                                                              \
-        POSTFX_ABI_MINOR,                                                                                              \
-        sizeof(postfx_module_effects) / sizeof(postfx_module_effects[0]),                                              \
-        postfx_module_effects,                                                                                         \
-        postfx_embedded_sources,                                                                                       \
-        sizeof(postfx_embedded_sources) / sizeof(postfx_embedded_sources[0]),                                          \
+#define POSTFX_MODULE(...)                                                                                   \
+    namespace {                                                                                              \
+    constexpr const postfx_effect* postfx_module_effects[] = {__VA_ARGS__};                                  \
+    }                                                                                                        \
+    extern "C" __attribute__((visibility("default"))) constinit const postfx_module postfx_module_v1 = {     \
+        sizeof(postfx_module),                                                                               \
+        POSTFX_ABI_MAJOR,                                                                                    \
+        POSTFX_ABI_MINOR,                                                                                    \
+        sizeof(postfx_module_effects) / sizeof(postfx_module_effects[0]),                                    \
+        postfx_module_effects,                                                                               \
+        postfx_embedded_sources,                                                                             \
+        sizeof(postfx_embedded_sources) / sizeof(postfx_embedded_sources[0]),                                \
         sizeof(postfx_source)};

@@ -31,8 +31,9 @@ struct Report {
 /// The plan's part of a report: everything but times.
 Report describe(const Plan& plan);
 
-/// {"effects": [{"id", "name", "status", "moment", "reason"}], "passes": [{"name", "effects", "width", "height",
-/// "format", "reads", "cpu_ms", "gpu_ms"}], "clock", "texture_bytes", "warnings"}; absent times are null.
+/// {"effects": [{"id", "name", "status", "moment", "reason"}], "passes": [{"name", "effects", "width",
+/// "height", "format", "reads", "cpu_ms", "gpu_ms"}], "clock", "texture_bytes", "warnings"}; absent times are
+/// null.
 std::string report_json(const Report& report);
 /// The same for people.
 std::string report_text(const Report& report);

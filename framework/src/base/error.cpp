@@ -34,8 +34,8 @@ std::string Place::text() const {
 }
 
 Error::Error(Place place, const std::string& message)
-    : std::runtime_error(place.text().empty() ? message : place.text() + ": " + message), place_(std::move(place)),
-      message_(message) {}
+    : std::runtime_error(place.text().empty() ? message : place.text() + ": " + message),
+      place_(std::move(place)), message_(message) {}
 
 std::string did_you_mean(std::string_view word, const std::vector<std::string>& candidates) {
     const std::string* nearest = nullptr;

@@ -1,1 +1,262 @@
+#include <execute/program_cache.hpp>
+#include <gl/clock.hpp>
+#include <gl/context.hpp>
+#include <gl/objects.hpp>
+
+#include <postfx/error.hpp>
 #include <postfx/executor.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <optional>
+
+namespace postfx {
+namespace {
+
+/// The block at binding 0, as shaders/postfx/prelude.glsl declares it (std140).
+struct FrameBlock {
+    float size[2], inverse_size[2];
+    float depth_affine[2];
+    float sky_depth, near_plane;
+    float half_extent[2];
+    std::int32_t orthographic;
+    float time;
+    std::uint32_t frame, seed;
+    float padding[2];
+    float view_to_world[16];
+};
+static_assert(sizeof(FrameBlock) == 128);
+
+FrameBlock frame_block(const Plan& plan, const FrameInputs& inputs) {
+    const Camera& camera = inputs.camera;
+    const double half_height = camera.orthographic ? camera.vertical_extent / 2 : camera.tan_half_fov();
+    FrameBlock block{};
+    block.size[0] = static_cast<float>(plan.width);
+    block.size[1] = static_cast<float>(plan.height);
+    block.inverse_size[0] = static_cast<float>(1.0 / plan.width);
+    block.inverse_size[1] = static_cast<float>(1.0 / plan.height);
+    block.depth_affine[0] = static_cast<float>(camera.depth_scale);
+    block.depth_affine[1] = static_cast<float>(camera.depth_offset);
+    block.sky_depth = static_cast<float>(camera.sky_depth);
+    block.near_plane = static_cast<float>(camera.near_plane);
+    block.half_extent[0] = static_cast<float>(half_height * plan.width / plan.height);
+    block.half_extent[1] = static_cast<float>(half_height);
+    block.orthographic = camera.orthographic;
+    block.time = static_cast<float>(inputs.time);
+    block.frame = inputs.frame;
+    block.seed = inputs.seed;
+    std::copy(camera.view_to_world.begin(), camera.view_to_world.end(), block.view_to_world);
+    return block;
+}
+
+/// The fixed state that full-screen passes rely on, whatever the host drew before.
+void set_pass_state() {
+    for (GLenum capability : {GL_BLEND, GL_DEPTH_TEST, GL_STENCIL_TEST, GL_SCISSOR_TEST, GL_CULL_FACE,
+                              GL_FRAMEBUFFER_SRGB, GL_DITHER, GL_COLOR_LOGIC_OP, GL_RASTERIZER_DISCARD}) {
+        glDisable(capability);
+    }
+    glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+    glPolygonMode(GL_FRONT_AND_BACK, GL_FILL);
+}
+
+struct PassTime {
+    double cpu_ms = 0, wall_ms = 0;
+};
+
+} // namespace
+
+struct Executor::State {
+    /// A pass of the current plan with its GL names looked up.
+    struct ReadyPass {
+        std::string name;
+        GLuint program = 0;
+        gl::Framebuffer framebuffer;
+        gl::Buffer block;
+    };
+    /// Everything that belongs to one plan.
+    struct Ready {
+        Plan plan;
+        std::vector<gl::Texture> targets;
+        std::vector<ReadyPass> passes;
+    };
+
+    explicit State(std::filesystem::path cache)
+        : programs(std::move(cache)), vertex_array(gl::make_vertex_array()), nearest(gl::make_sampler(false)),
+          linear(gl::make_sampler(true)), frame_buffer(gl::make_buffer(sizeof(FrameBlock), nullptr)) {}
+
+    GLuint texture(const Ready& ready, const ImageRef& image,
+                   const std::vector<std::uint32_t>& attachments) const {
+        return image.kind == ImageRef::Kind::attachment ? attachments[image.index]
+                                                        : ready.targets[image.index].name();
+    }
+
+    void draw(const ReadyPass& ready_pass, const Pass& pass,
+              const std::vector<std::uint32_t>& attachments) const {
+        const gl::DebugGroup group(ready_pass.name.c_str());
+        glBindFramebuffer(GL_DRAW_FRAMEBUFFER, ready_pass.framebuffer.name());
+        glViewport(0, 0, pass.width, pass.height);
+        glUseProgram(ready_pass.program);
+        glBindBufferBase(GL_UNIFORM_BUFFER, 1, ready_pass.block.name());
+        for (std::size_t unit = 0; unit < pass.inputs.size(); ++unit) {
+            const PassInput& input = pass.inputs[unit];
+            glBindTextureUnit(static_cast<GLuint>(unit), texture(current, input.image, attachments));
+            glBindSampler(static_cast<GLuint>(unit), (input.linear ? linear : nearest).name());
+        }
+        glDrawArrays(GL_TRIANGLES, 0, 3);
+    }
+
+    ProgramCache programs;
+    gl::VertexArray vertex_array;
+    gl::Sampler nearest, linear;
+    gl::Buffer frame_buffer;
+    Ready current;
+    std::vector<PassTime> profile; ///< of the last profiled run
+    std::optional<gl::TimestampRing> ring;
+    std::optional<gl::ClockCheck> clock;
+    Timing last_timing = Timing::off;
+    GLuint picture = 0;
+};
+
+namespace {
+
+/// Take from `old` a texture of that size and format, or make one.
+gl::Texture reuse_or_make(std::vector<gl::Texture>& old, const Target& target) {
+    const auto found = std::find_if(old.begin(), old.end(), [&](const gl::Texture& texture) {
+        return texture && texture.width() == target.width && texture.height() == target.height
+               && texture.format() == target.format;
+    });
+    return found != old.end() ? std::move(*found) : gl::Texture(target.width, target.height, target.format);
+}
+
+/// Same passes into the same targets: only numbers in the uniform blocks may differ.
+bool same_structure(const Plan& a, const Plan& b) {
+    const auto same_target = [](const Target& x, const Target& y) {
+        return x.width == y.width && x.height == y.height && x.format == y.format;
+    };
+    const auto same_pass = [](const Pass& x, const Pass& y) {
+        return x.program->key == y.program->key && x.outputs == y.outputs && x.name == y.name
+               && x.uniform_block.size() == y.uniform_block.size();
+    };
+    return std::equal(a.targets.begin(), a.targets.end(), b.targets.begin(), b.targets.end(), same_target)
+           && std::equal(a.passes.begin(), a.passes.end(), b.passes.begin(), b.passes.end(), same_pass);
+}
+
+} // namespace
+
+Executor::Executor(std::filesystem::path program_cache)
+    : state_(std::make_unique<State>(std::move(program_cache))) {}
+Executor::~Executor() = default;
+Executor::Executor(Executor&&) noexcept = default;
+Executor& Executor::operator=(Executor&&) noexcept = default;
+
+void Executor::prepare(const Plan& plan) {
+    State& state = *state_;
+    if (!state.current.passes.empty() && same_structure(plan, state.current.plan)) {
+        for (std::size_t i = 0; i < plan.passes.size(); ++i) {
+            const auto& bytes = plan.passes[i].uniform_block;
+            if (bytes != state.current.plan.passes[i].uniform_block) {
+                glNamedBufferSubData(state.current.passes[i].block.name(), 0, std::ssize(bytes),
+                                     bytes.data());
+            }
+        }
+        state.current.plan = plan;
+        return;
+    }
+
+    State::Ready ready;
+    for (const Pass& pass : plan.passes) {
+        ready.passes.push_back({pass.name, state.programs.get(*pass.program, pass), {}, {}});
+    }
+    for (const Target& target : plan.targets)
+        ready.targets.push_back(reuse_or_make(state.current.targets, target));
+    for (std::size_t i = 0; i < plan.passes.size(); ++i) {
+        std::vector<GLuint> outputs;
+        for (const ImageRef& output : plan.passes[i].outputs)
+            outputs.push_back(ready.targets[output.index].name());
+        ready.passes[i].framebuffer = gl::make_framebuffer(outputs);
+        const auto& bytes = plan.passes[i].uniform_block;
+        ready.passes[i].block = gl::make_buffer(bytes.size(), bytes.data());
+    }
+    ready.plan = plan;
+    state.current = std::move(ready);
+    state.profile.assign(plan.passes.size(), {});
+    state.ring.reset();
+    state.last_timing = Timing::off;
+}
+
+std::uint32_t Executor::run(const FrameInputs& inputs, Timing timing) {
+    State& state = *state_;
+    const Plan& plan = state.current.plan;
+    if (inputs.textures.size() != plan.attachments.size()) {
+        throw Error(fmt::format("the plan reads {} attachments, {} were given", plan.attachments.size(),
+                                inputs.textures.size()));
+    }
+    if (timing == Timing::gpu && !state.ring) state.ring.emplace(plan.passes.size());
+    if (timing != Timing::off && !state.clock) state.clock = gl::check_clock();
+    state.last_timing = timing;
+
+    const FrameBlock block = frame_block(plan, inputs);
+    glNamedBufferSubData(state.frame_buffer.name(), 0, sizeof(block), &block);
+    glBindBufferBase(GL_UNIFORM_BUFFER, 0, state.frame_buffer.name());
+    glBindVertexArray(state.vertex_array.name());
+    set_pass_state();
+
+    if (timing == Timing::gpu) {
+        state.ring->begin_frame();
+        state.ring->mark();
+    } else if (timing == Timing::profile) {
+        glFinish();
+    }
+    for (std::size_t i = 0; i < plan.passes.size(); ++i) {
+        const gl::HostTime start = timing == Timing::profile ? gl::HostTime::now() : gl::HostTime{};
+        state.draw(state.current.passes[i], plan.passes[i], inputs.textures);
+        if (timing == Timing::profile) {
+            glFinish();
+            const gl::HostTime end = gl::HostTime::now();
+            state.profile[i] = {end.cpu_ms - start.cpu_ms, end.wall_ms - start.wall_ms};
+        } else if (timing == Timing::gpu) {
+            state.ring->mark();
+        }
+    }
+    if (timing == Timing::gpu) state.ring->end_frame();
+    // The host's own draws must not sample through our sampler objects.
+    for (GLuint unit = 0; unit < 16; ++unit)
+        glBindSampler(unit, 0);
+    glBindFramebuffer(GL_DRAW_FRAMEBUFFER, 0);
+
+    state.picture = state.texture(state.current, plan.picture, inputs.textures);
+    return state.picture;
+}
+
+Report Executor::report() const {
+    const State& state = *state_;
+    Report report = describe(state.current.plan);
+    if (state.last_timing == Timing::profile) {
+        for (std::size_t i = 0; i < report.passes.size(); ++i) {
+            report.passes[i].cpu_ms = state.profile[i].cpu_ms;
+            report.passes[i].wall_ms = state.profile[i].wall_ms;
+        }
+        report.clock = "CPU time of all threads and wall time around each finished pass (profile mode; "
+                       + state.clock->text + ")";
+    } else if (state.last_timing == Timing::gpu) {
+        const std::vector<double>& times = state_->ring->latest();
+        for (std::size_t i = 0; i < times.size() && state.clock->timer_queries_honest; ++i) {
+            report.passes[i].gpu_ms = times[i];
+        }
+        report.clock = state.clock->timer_queries_honest ? state.clock->text
+                                                         : "none to be believed: " + state.clock->text;
+    }
+    return report;
+}
+
+Image Executor::read_picture() const {
+    const State& state = *state_;
+    const Plan& plan = state.current.plan;
+    // An input that came through untouched is read as floats: wide enough for any format that it may have.
+    const bool own = plan.picture.kind == ImageRef::Kind::target;
+    const Format format = own ? plan.targets[plan.picture.index].format : Format::rgba32f;
+    return gl::read_texture(state.picture, plan.width, plan.height, format);
+}
+
+} // namespace postfx

@@ -1,0 +1,103 @@
+#include <execute/program_cache.hpp>
+
+#include <gl/context.hpp>
+#include <image/files.hpp>
+
+#include <postfx/error.hpp>
+
+#include <fmt/format.h>
+
+#include <cstring>
+#include <fstream>
+#include <functional>
+#include <iterator>
+
+namespace postfx {
+namespace {
+
+constexpr std::string_view vertex_text = R"(#version 450 core
+// One triangle that covers the target.
+void main() {
+    gl_Position = vec4(gl_VertexID == 1 ? 3.0 : -1.0, gl_VertexID == 2 ? 3.0 : -1.0, 0.0, 1.0);
+}
+)";
+
+} // namespace
+
+ProgramCache::ProgramCache(std::filesystem::path directory) : directory_(std::move(directory)) {
+    const gl::DeviceInfo device = gl::current_device();
+    device_ = device.vendor + "\n" + device.renderer + "\n" + device.version;
+    GLint formats = 0;
+    glGetIntegerv(GL_NUM_PROGRAM_BINARY_FORMATS, &formats);
+    if (formats == 0) directory_.clear(); // the driver gives no binaries
+}
+
+GLuint ProgramCache::get(const ProgramSource& source, const Pass& pass) {
+    gl::Program& program = programs_[source.key];
+    if (program) return program.name();
+    program = load(source);
+    if (program) return program.name();
+    try {
+        program = gl::make_program(vertex_text, source.text, pass.name, source.files);
+    } catch (const Error& error) {
+        Place place = error.place();
+        place.effect = pass.name;
+        throw Error(place, error.message());
+    }
+    save(source, program);
+    return program.name();
+}
+
+std::filesystem::path ProgramCache::file_of(const ProgramSource& source) const {
+    const std::size_t device_key = std::hash<std::string>{}(device_);
+    return directory_ / fmt::format("{:016x}{:016x}.program", device_key, source.key);
+}
+
+/// The stored file is: binary format (4 bytes), length of the shader text (8 bytes), shader text, binary. The
+/// text is compared, so that two texts of one hash never share a program.
+gl::Program ProgramCache::load(const ProgramSource& source) const {
+    if (directory_.empty()) return {};
+    std::ifstream file(file_of(source), std::ios::binary);
+    const std::string bytes{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+    GLenum format = 0;
+    std::uint64_t length = 0;
+    const std::size_t head = sizeof(format) + sizeof(length);
+    if (bytes.size() <= head) return {};
+    std::memcpy(&format, bytes.data(), sizeof(format));
+    std::memcpy(&length, bytes.data() + sizeof(format), sizeof(length));
+    if (length != source.text.size() || bytes.size() <= head + length
+        || bytes.compare(head, length, source.text) != 0) {
+        return {};
+    }
+    gl::Program program(glCreateProgram());
+    glProgramBinary(program.name(), format, bytes.data() + head + length,
+                    static_cast<GLsizei>(bytes.size() - head - length));
+    GLint linked = 0;
+    glGetProgramiv(program.name(), GL_LINK_STATUS, &linked);
+    return linked ? std::move(program) : gl::Program{};
+}
+
+void ProgramCache::save(const ProgramSource& source, const gl::Program& program) const {
+    if (directory_.empty()) return;
+    GLint size = 0;
+    glGetProgramiv(program.name(), GL_PROGRAM_BINARY_LENGTH, &size);
+    if (size <= 0) return;
+    std::string binary(static_cast<std::size_t>(size), '\0');
+    GLenum format = 0;
+    GLsizei written = 0;
+    glGetProgramBinary(program.name(), size, &written, &format, binary.data());
+    binary.resize(static_cast<std::size_t>(written));
+    const std::uint64_t length = source.text.size();
+    std::string bytes(reinterpret_cast<const char*>(&format), sizeof(format));
+    bytes.append(reinterpret_cast<const char*>(&length), sizeof(length));
+    bytes += source.text;
+    bytes += binary;
+    try {
+        std::filesystem::create_directories(directory_);
+        write_file_atomically(file_of(source), bytes);
+    } catch (const std::exception&) {
+        // A cache that can't be written costs time at the next start, nothing else.
+    }
+}
+
+} // namespace postfx

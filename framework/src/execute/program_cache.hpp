@@ -1,0 +1,33 @@
+// Linked programs by their text: in memory for this executor, on disk between runs.
+#pragma once
+
+#include <gl/objects.hpp>
+
+#include <postfx/plan.hpp>
+
+#include <filesystem>
+#include <map>
+#include <string>
+
+namespace postfx {
+
+class ProgramCache {
+public:
+    /// `directory`: where program binaries are kept; empty = nowhere.
+    explicit ProgramCache(std::filesystem::path directory);
+
+    /// The linked program, compiled at most once. `pass` names it in messages. Throws Error with the author's
+    /// file:line.
+    GLuint get(const ProgramSource& source, const Pass& pass);
+
+private:
+    std::filesystem::path file_of(const ProgramSource& source) const;
+    gl::Program load(const ProgramSource& source) const;
+    void save(const ProgramSource& source, const gl::Program& program) const;
+
+    std::filesystem::path directory_;
+    std::string device_; ///< binaries are good for this driver only
+    std::map<std::uint64_t, gl::Program> programs_;
+};
+
+} // namespace postfx

@@ -1,0 +1,355 @@
+#include <plan/assemble.hpp>
+
+#include <postfx_shader_library.h>
+
+#include <postfx/error.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cstring>
+#include <functional>
+#include <set>
+
+namespace postfx {
+namespace {
+
+std::string upper(std::string text) {
+    std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return std::toupper(c); });
+    return text;
+}
+
+/// "bloom_down" -> "BloomDown".
+std::string pascal(std::string_view snake) {
+    std::string name;
+    bool start = true;
+    for (char c : snake) {
+        if (c == '_') {
+            start = true;
+        } else {
+            name += start ? static_cast<char>(std::toupper(static_cast<unsigned char>(c))) : c;
+            start = false;
+        }
+    }
+    return name;
+}
+
+std::string struct_name(const Stage& stage) {
+    return pascal(stage.function()) + "Params";
+}
+
+/// A GLSL literal that reads back as the same float.
+std::string literal(double value, bool integer) {
+    if (integer) return fmt::format("{}", static_cast<long long>(value));
+    std::string text = fmt::format("{:.9g}", value);
+    if (text.find_first_of(".en") == text.npos) text += ".0";
+    return text;
+}
+
+const postfx_source* library_source(std::string_view name) {
+    for (const postfx_source& source : postfx_embedded_sources) {
+        if (name == source.name) return &source;
+    }
+    return nullptr;
+}
+
+std::string constant_line(const RecordedNumber& constant) {
+    return fmt::format("const {} {} = {};\n", constant.integer ? "int" : "float", constant.name,
+                       literal(constant.value[0], constant.integer));
+}
+
+/// Collects a program: every file once, every constant and struct once.
+class Assembly {
+public:
+    Assembly() {
+        program_.text = "#version 450 core\n";
+        library("prelude.glsl", Place{});
+    }
+
+    void library(std::string_view name, const Place& asked_from) {
+        const postfx_source* source = library_source(name);
+        if (!source) {
+            throw Error(asked_from, fmt::format("no shader library file <postfx/{}>", name));
+        }
+        text(fmt::format("<postfx/{}>", name), source->text, nullptr);
+    }
+
+    void function(const Stage& stage) {
+        if (!functions_.insert(stage.source).second) return;
+        for (const RecordedNumber& constant : stage.constants) {
+            if (constants_.insert(constant.name).second) program_.text += constant_line(constant);
+        }
+        program_.text += fmt::format("struct {} {{\n", struct_name(stage));
+        for (const BlockMember& member : stage.members) {
+            program_.text += fmt::format("    {} {};\n", member.type, member.name);
+        }
+        // GLSL has no empty structs.
+        if (stage.members.empty()) program_.text += "    float postfx_no_parameters;\n";
+        program_.text += "};\n";
+        text(stage.source->name, stage.source->text, stage.effect.get());
+    }
+
+    void generated(std::string_view lines) {
+        if (program_.files.empty() || program_.files.back() != "generated") begin_file("generated");
+        program_.text += lines;
+    }
+
+    ProgramSource finish() {
+        program_.key = std::hash<std::string>{}(program_.text);
+        return std::move(program_);
+    }
+
+private:
+    std::size_t begin_file(std::string name) {
+        program_.files.push_back(std::move(name));
+        program_.text += fmt::format("#line 1 {}\n", program_.files.size() - 1);
+        return program_.files.size() - 1;
+    }
+
+    void text(const std::string& name, std::string_view glsl, const EffectInfo* effect) {
+        if (!included_.insert({effect ? effect->module_path.string() : "", name}).second) return;
+        const std::size_t file = begin_file(name);
+        int line = 1;
+        for (std::size_t at = 0; at < glsl.size(); ++line) {
+            const std::size_t end = std::min(glsl.find('\n', at), glsl.size());
+            const std::string_view row = glsl.substr(at, end - at);
+            at = end + 1;
+            if (row.find("#include") == row.find_first_not_of(" \t") && row.find("#include") != row.npos) {
+                include(row, Place{.file = name, .line = line}, effect);
+                program_.text += fmt::format("#line {} {}\n", line + 1, file);
+            } else {
+                program_.text.append(row).push_back('\n');
+            }
+        }
+    }
+
+    void include(std::string_view row, const Place& place, const EffectInfo* effect) {
+        const std::size_t open = row.find_first_of("<\"");
+        const std::size_t close = row.find_last_of(">\"");
+        if (open == row.npos || close <= open) {
+            throw Error(place, "#include expects <postfx/name.glsl> or \"name.glsl\"");
+        }
+        const std::string name(row.substr(open + 1, close - open - 1));
+        constexpr std::string_view prefix = "postfx/";
+        if (row[open] == '<' && name.starts_with(prefix)) return library(name.substr(prefix.size()), place);
+        const SourceInfo* source = effect ? effect->find_source(name) : nullptr;
+        if (!source)
+            throw Error(place, fmt::format("#include of \"{}\", which the plugin does not have", name));
+        if (!source->not_pointwise.empty()) {
+            throw Error(Place{.file = name}, fmt::format("can't be included: {}", source->not_pointwise));
+        }
+        text(source->name, source->text, effect);
+    }
+
+    ProgramSource program_;
+    std::set<const SourceInfo*> functions_;
+    std::set<std::pair<std::string, std::string>> included_;
+    std::set<std::string> constants_;
+};
+
+std::string block_declaration(const std::vector<Stage>& stages) {
+    std::string text = "layout(std140, binding = 1) uniform PostfxStages {\n    vec4 target;\n";
+    for (std::size_t i = 0; i < stages.size(); ++i) {
+        text += fmt::format("    {} stage_{};\n", struct_name(stages[i]), i);
+    }
+    return text + "} u_stages;\n";
+}
+
+std::string sampler_name(std::size_t stage, const std::string& sampler) {
+    return fmt::format("u_stage_{}_{}", stage, sampler);
+}
+
+std::string sampler_declarations(const std::vector<Stage>& stages, int first_unit) {
+    std::string text;
+    int unit = first_unit;
+    for (std::size_t i = 0; i < stages.size(); ++i) {
+        for (const std::string& sampler : stages[i].samplers) {
+            text +=
+                fmt::format("layout(binding = {}) uniform sampler2D {};\n", unit++, sampler_name(i, sampler));
+        }
+    }
+    return text;
+}
+
+std::string arguments(const std::vector<Stage>& stages, std::size_t i) {
+    std::string text = fmt::format("pixel, u_stages.stage_{}", i);
+    for (const std::string& sampler : stages[i].samplers)
+        text += ", " + sampler_name(i, sampler);
+    return text;
+}
+
+constexpr std::string_view main_start =
+    "void main() {\n"
+    "    Pixel pixel = Pixel(ivec2(gl_FragCoord.xy), gl_FragCoord.xy, gl_FragCoord.xy * u_stages.target.zw,\n"
+    "                        ivec2(u_stages.target.xy));\n";
+
+/// Writes numbers where std140 wants them.
+class Std140 {
+public:
+    void align(std::size_t alignment) {
+        bytes_.resize((bytes_.size() + alignment - 1) / alignment * alignment);
+    }
+
+    void member(const BlockMember& member) {
+        constexpr std::size_t alignments[] = {0, 4, 8, 16, 16};
+        align(alignments[member.components]);
+        const bool integer = member.type[0] == 'i' || member.type[0] == 'b';
+        for (int i = 0; i < member.components; ++i) {
+            if (integer) {
+                append(static_cast<std::int32_t>(member.value[i]));
+            } else {
+                append(static_cast<float>(member.value[i]));
+            }
+        }
+    }
+
+    std::vector<std::byte> finish() {
+        align(16);
+        return std::move(bytes_);
+    }
+
+private:
+    template<class Number>
+    void append(Number number) {
+        bytes_.resize(bytes_.size() + sizeof(number));
+        std::memcpy(bytes_.data() + bytes_.size() - sizeof(number), &number, sizeof(number));
+    }
+
+    std::vector<std::byte> bytes_;
+};
+
+std::string_view parameter_type(const ParameterInfo& parameter) {
+    switch (parameter.kind) {
+    case ParameterKind::number:
+        return "float";
+    case ParameterKind::color:
+        return "vec3";
+    case ParameterKind::toggle:
+        return "bool";
+    case ParameterKind::integer:
+    case ParameterKind::choice:
+        return "int";
+    }
+    return "";
+}
+
+} // namespace
+
+std::string Stage::function() const {
+    return source->name.substr(0, source->name.rfind('.'));
+}
+
+Stage make_stage(const ChainEntry& entry, const RecordedPass& pass) {
+    Stage stage;
+    stage.entry = entry.name;
+    stage.effect = entry.effect;
+    stage.source = pass.source;
+    for (std::size_t i = 0; i < entry.effect->parameters.size(); ++i) {
+        const ParameterInfo& parameter = entry.effect->parameters[i];
+        if (parameter.constant) {
+            stage.constants.push_back({upper(entry.effect->id + "_" + parameter.id),
+                                       parameter.kind != ParameterKind::number, 1, entry.values[i]});
+        } else {
+            stage.members.push_back({parameter.id, std::string(parameter_type(parameter)), entry.values[i],
+                                     parameter.components()});
+        }
+    }
+    for (const RecordedNumber& value : pass.values) {
+        const std::string scalar = value.integer ? "int" : "float";
+        const std::string vector = fmt::format("{}vec{}", value.integer ? "i" : "", value.components);
+        stage.members.push_back(
+            {value.name, value.components == 1 ? scalar : vector, value.value, value.components});
+    }
+    stage.constants.insert(stage.constants.end(), pass.constants.begin(), pass.constants.end());
+    for (const RecordedInput& input : pass.inputs)
+        stage.samplers.push_back(input.name);
+    return stage;
+}
+
+std::string why_not_together(const Stage& a, const Stage& b) {
+    if (a.source == b.source && a.members != b.members) {
+        return fmt::format("{} and {} use one function with different values", a.entry, b.entry);
+    }
+    for (const RecordedNumber& constant : a.constants) {
+        const auto same =
+            std::find_if(b.constants.begin(), b.constants.end(),
+                         [&](const RecordedNumber& other) { return other.name == constant.name; });
+        if (same != b.constants.end() && same->value != constant.value) {
+            return fmt::format("{} and {} are compiled with different {}", a.entry, b.entry, constant.name);
+        }
+    }
+    return "";
+}
+
+ProgramSource assemble_compose(const std::vector<Stage>& stages, Encoding encoding) {
+    Assembly assembly;
+    for (const Stage& stage : stages)
+        assembly.function(stage);
+    if (encoding != Encoding::none) assembly.library("output.glsl", Place{});
+    // Declared only now, so that no effect's function can name the chain's stored colour.
+    assembly.generated(block_declaration(stages));
+    assembly.generated("layout(binding = 0) uniform sampler2D u_color;\n");
+    assembly.generated(sampler_declarations(stages, 1));
+    assembly.generated("layout(location = 0) out vec4 o_color;\n");
+    assembly.generated(main_start);
+    assembly.generated(
+        "    vec4 stored = texelFetch(u_color, pixel.index, 0);\n    vec3 color = stored.rgb;\n");
+    for (std::size_t i = 0; i < stages.size(); ++i) {
+        assembly.generated(
+            fmt::format("    color = {}(color, {});\n", stages[i].function(), arguments(stages, i)));
+    }
+    if (encoding == Encoding::srgb) assembly.generated("    color = postfx_encode(color);\n");
+    if (encoding == Encoding::srgb_dithered)
+        assembly.generated("    color = postfx_encode_dithered(color, pixel);\n");
+    assembly.generated("    o_color = vec4(color, stored.a);\n}\n");
+    return assembly.finish();
+}
+
+ProgramSource assemble_fragment(const Stage& stage, int outputs) {
+    Assembly assembly;
+    assembly.function(stage);
+    assembly.generated(block_declaration({stage}));
+    assembly.generated(sampler_declarations({stage}, 0));
+    for (int i = 0; i < outputs; ++i) {
+        assembly.generated(fmt::format("layout(location = {}) out vec4 o_{};\n", i, i));
+    }
+    assembly.generated(main_start);
+    if (outputs == 1) {
+        assembly.generated(fmt::format("    o_0 = {}({});\n}}\n", stage.function(), arguments({stage}, 0)));
+    } else {
+        std::string results;
+        for (int i = 0; i < outputs; ++i)
+            results += fmt::format(", o_{}", i);
+        assembly.generated(
+            fmt::format("    {}({}{});\n}}\n", stage.function(), arguments({stage}, 0), results));
+    }
+    return assembly.finish();
+}
+
+std::string program_key(const std::vector<Stage>& stages, std::string_view form) {
+    std::string key(form);
+    for (const Stage& stage : stages) {
+        key += fmt::format("|{}:{}", static_cast<const void*>(stage.source), stage.samplers.size());
+        for (const BlockMember& member : stage.members)
+            key += fmt::format(",{} {}", member.type, member.name);
+        for (const RecordedNumber& constant : stage.constants) {
+            key += fmt::format(",{}={}", constant.name, literal(constant.value[0], constant.integer));
+        }
+    }
+    return key;
+}
+
+std::vector<std::byte> uniform_block(const std::vector<Stage>& stages, int width, int height) {
+    Std140 block;
+    block.member({"target", "vec4", {double(width), double(height), 1.0 / width, 1.0 / height}, 4});
+    for (const Stage& stage : stages) {
+        block.align(16);
+        for (const BlockMember& member : stage.members)
+            block.member(member);
+        if (stage.members.empty()) block.member({"postfx_no_parameters", "float", {}, 1});
+    }
+    return block.finish();
+}
+
+} // namespace postfx

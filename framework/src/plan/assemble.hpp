@@ -1,0 +1,60 @@
+// Shader text from the functions that effects wrote. Generated around them: constants, parameter structs,
+// samplers, main(). Nothing of the author's text is changed but #include lines.
+#pragma once
+
+#include <plan/record.hpp>
+
+#include <postfx/plan.hpp>
+
+#include <map>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace postfx {
+
+/// A member of a stage's parameter struct.
+struct BlockMember {
+    std::string name;
+    std::string type; ///< "float", "int", "bool", "vec2", "vec3", "vec4", "ivec2" ...
+    std::array<double, 4> value{};
+    int components = 1;
+    bool operator==(const BlockMember& other) const { return name == other.name && type == other.type; }
+};
+
+/// One author's function in a program, with what belongs to it.
+struct Stage {
+    std::string entry; ///< chain entry name
+    EffectPtr effect;
+    const SourceInfo* source = nullptr;
+    std::vector<BlockMember> members;
+    std::vector<RecordedNumber> constants; ///< effect's constant parameters, then the pass's constants
+    std::vector<std::string> samplers;     ///< argument names, in order
+
+    /// The function's name: the file's name without ".glsl".
+    std::string function() const;
+};
+
+Stage make_stage(const ChainEntry& entry, const RecordedPass& pass);
+
+/// Why both can't be in one program; empty when they can. Two instances of one function share it and differ
+/// in their block, so they must agree in everything that is compiled in.
+std::string why_not_together(const Stage& a, const Stage& b);
+
+enum class Encoding { none, srgb, srgb_dithered };
+
+/// The program of a fused pass: every stage's function in turn on the pixel's own colour, then the encoding.
+/// Texture units: 0 is the stored colour, then every stage's samplers in order.
+ProgramSource assemble_compose(const std::vector<Stage>& stages, Encoding encoding);
+
+/// The program of a pass of its own. Texture units: the stage's samplers in order.
+ProgramSource assemble_fragment(const Stage& stage, int outputs);
+
+/// Names everything that is compiled in, so that equal keys have equal programs.
+std::string program_key(const std::vector<Stage>& stages, std::string_view form);
+
+/// std140 bytes of the block that both programs declare at binding 1: target size, then one struct per stage.
+std::vector<std::byte> uniform_block(const std::vector<Stage>& stages, int width, int height);
+
+} // namespace postfx

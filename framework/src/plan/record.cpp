@@ -1,0 +1,252 @@
+#include <plan/record.hpp>
+
+#include <plugin/declarations.hpp>
+
+#include <postfx/error.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <functional>
+
+namespace postfx {
+namespace {
+
+constexpr int largest_side = 16384;
+
+/// Thrown between record()'s own functions only; never crosses the plugin.
+struct Wrong {
+    std::string message;
+};
+
+/// Receives the calls of one plan(). No exception may leave a callback: the plugin is not ours, so the first
+/// problem is kept and everything after it ignored.
+class Recorder {
+public:
+    Recorder(const ChainEntry& entry, const Facts& facts) : entry_(entry), facts_(facts) {
+        abi_ = {sizeof(postfx_builder), 0,       this,   on_identity, on_refuse, on_color,
+                on_attachment,          on_pass, on_size};
+    }
+
+    const postfx_builder& abi() const { return abi_; }
+
+    Recording finish() {
+        if (problem_.empty()) {
+            const bool composed = !recording_.passes.empty() && recording_.passes.back().compose;
+            if (recording_.identity && !recording_.passes.empty()) {
+                problem_ = "says that it is the identity, and declares passes";
+            } else if (!recording_.identity && !composed) {
+                problem_ = "says neither identity() nor ends with compose()";
+            }
+        }
+        if (!problem_.empty()) throw Error(Place{.effect = entry_.name}, problem_);
+        return std::move(recording_);
+    }
+
+private:
+    static Recorder& self(void* context) { return *static_cast<Recorder*>(context); }
+
+    void guarded(const std::function<void()>& body) {
+        if (!problem_.empty()) return;
+        try {
+            body();
+        } catch (const Wrong& wrong) {
+            problem_ = wrong.message;
+        } catch (const std::exception& error) {
+            problem_ = error.what();
+        }
+    }
+
+    static void on_identity(void* context, const char* moment, const char* kind, const char* reason) {
+        self(context).guarded([&] { self(context).recording_.identity = Identity{moment, kind, reason}; });
+    }
+    static void on_refuse(void* context, const char* message) {
+        self(context).guarded([&] { throw Wrong{message}; });
+    }
+    static postfx_image on_color(void* context) {
+        postfx_image handle = 0;
+        self(context).guarded([&] { handle = self(context).color(); });
+        return handle;
+    }
+    static postfx_image on_attachment(void* context, const char* name) {
+        postfx_image handle = 0;
+        self(context).guarded([&] { handle = self(context).attachment(name); });
+        return handle;
+    }
+    static postfx_image on_pass(void* context, const postfx_pass* pass) {
+        postfx_image handle = 0;
+        self(context).guarded([&] { handle = self(context).pass(copy_abi<postfx_pass>(pass)); });
+        return handle;
+    }
+    static void on_size(void* context, postfx_image image, std::uint32_t* width, std::uint32_t* height) {
+        self(context).guarded([&] {
+            const RecordedImage& found =
+                self(context).recording_.images[self(context).index(image, "size()")];
+            *width = static_cast<std::uint32_t>(found.width);
+            *height = static_cast<std::uint32_t>(found.height);
+        });
+    }
+
+    postfx_image add_image(RecordedImage image) {
+        recording_.images.push_back(std::move(image));
+        return static_cast<postfx_image>(recording_.images.size());
+    }
+
+    int index(postfx_image handle, std::string_view user) const {
+        if (handle == 0 || handle > recording_.images.size()) {
+            throw Wrong{
+                fmt::format("{} gets an image that does not exist (is an attachment missing?)", user)};
+        }
+        return static_cast<int>(handle) - 1;
+    }
+
+    postfx_image color() {
+        for (std::size_t i = 0; i < recording_.images.size(); ++i) {
+            if (recording_.images[i].kind == RecordedImage::Kind::color)
+                return static_cast<postfx_image>(i + 1);
+        }
+        return add_image({RecordedImage::Kind::color, "", -1, 0, facts_.width, facts_.height});
+    }
+
+    postfx_image attachment(const std::string& name) {
+        const auto& declared = entry_.effect->reads;
+        if (std::find(declared.begin(), declared.end(), name) == declared.end()) {
+            throw Wrong{fmt::format("asks for the attachment \"{}\", which it does not declare", name)};
+        }
+        if (std::find(facts_.attachments.begin(), facts_.attachments.end(), name)
+            == facts_.attachments.end()) {
+            return 0;
+        }
+        return add_image({RecordedImage::Kind::attachment, name, -1, 0, facts_.width, facts_.height});
+    }
+
+    postfx_image pass(const postfx_pass& declared) {
+        RecordedPass pass;
+        pass.name = declared.name;
+        pass.compose = declared.kind == std::string_view("compose");
+        if (!pass.compose && declared.kind != std::string_view("fragment")) {
+            throw Wrong{fmt::format("pass {} has the unknown kind \"{}\"", pass.name, declared.kind)};
+        }
+        if (!recording_.passes.empty() && recording_.passes.back().compose) {
+            throw Wrong{fmt::format("declares pass {} after compose()", pass.name)};
+        }
+        pass.source = entry_.effect->find_source(declared.source);
+        if (!pass.source)
+            throw Wrong{fmt::format("has no source \"{}\" (pass {})", declared.source, pass.name)};
+        if (pass.compose && !pass.source->not_pointwise.empty()) {
+            throw Wrong{fmt::format("{} can't be composed: {}", declared.source, pass.source->not_pointwise)};
+        }
+        pass.width = static_cast<int>(declared.width);
+        pass.height = static_cast<int>(declared.height);
+        if (declared.width < 1 || declared.height < 1 || declared.width > largest_side
+            || declared.height > largest_side) {
+            throw Wrong{
+                fmt::format("pass {} wants {}x{} pixels", pass.name, declared.width, declared.height)};
+        }
+        for (std::uint32_t i = 0; i < declared.input_count; ++i) {
+            pass.inputs.push_back(input(abi_element(declared.inputs, declared.input_stride, i), pass.name));
+        }
+        for (std::uint32_t i = 0; i < declared.value_count; ++i) {
+            pass.values.push_back(number(abi_element(declared.values, declared.value_stride, i), pass.name));
+        }
+        for (std::uint32_t i = 0; i < declared.constant_count; ++i) {
+            pass.constants.push_back(
+                number(abi_element(declared.constants, declared.constant_stride, i), pass.name));
+        }
+        if (declared.output_count < 1 || declared.output_count > 8) {
+            throw Wrong{fmt::format("pass {} has {} outputs", pass.name, declared.output_count)};
+        }
+        for (std::uint32_t i = 0; i < declared.output_count; ++i) {
+            pass.formats.push_back(format(declared.formats[i], pass.name));
+        }
+        return add_pass(std::move(pass));
+    }
+
+    postfx_image add_pass(RecordedPass pass) {
+        const int index = static_cast<int>(recording_.passes.size());
+        postfx_image first = 0;
+        for (std::size_t i = 0; i < pass.formats.size() && !pass.compose; ++i) {
+            const postfx_image handle = add_image(
+                {RecordedImage::Kind::output, "", index, static_cast<int>(i), pass.width, pass.height});
+            if (i == 0) first = handle;
+        }
+        recording_.passes.push_back(std::move(pass));
+        return first;
+    }
+
+    RecordedInput input(const postfx_input& declared, const std::string& pass) const {
+        const std::string_view filter = declared.filter;
+        if (filter != "linear" && filter != "nearest") {
+            throw Wrong{
+                fmt::format("pass {}: {} has the unknown filter \"{}\"", pass, declared.name, filter)};
+        }
+        return {declared.name, index(declared.image, fmt::format("pass {}: {}", pass, declared.name)),
+                filter == "linear"};
+    }
+
+    static RecordedNumber number(const postfx_number& declared, const std::string& pass) {
+        const std::string_view kind = declared.kind;
+        if ((kind != "float" && kind != "int") || declared.count < 1 || declared.count > 4) {
+            throw Wrong{fmt::format("pass {}: {} has the unknown kind \"{}\" x {}", pass, declared.name, kind,
+                                    declared.count)};
+        }
+        RecordedNumber number{declared.name, kind == "int", static_cast<int>(declared.count), {}};
+        std::copy_n(declared.value, declared.count, number.value.begin());
+        return number;
+    }
+
+    Format format(std::string_view word, const std::string& pass) const {
+        if (word.empty()) return facts_.working_format;
+        const auto found = format_by_name(word);
+        if (!found || *found == Format::depth32f) {
+            throw Wrong{fmt::format("pass {} has the unknown format \"{}\"", pass, word)};
+        }
+        return *found;
+    }
+
+    const ChainEntry& entry_;
+    const Facts& facts_;
+    postfx_builder abi_{};
+    Recording recording_;
+    std::string problem_;
+};
+
+postfx_camera abi_camera(const Camera& camera) {
+    return {sizeof(postfx_camera),  camera.orthographic, camera.tan_half_fov(),
+            camera.vertical_extent, camera.near_plane,   camera.far_plane,
+            camera.depth_scale,     camera.depth_offset, camera.sky_depth};
+}
+
+} // namespace
+
+bool Recording::reads_color(const RecordedPass& pass) const {
+    return std::any_of(pass.inputs.begin(), pass.inputs.end(), [&](const RecordedInput& input) {
+        return images[input.image].kind == RecordedImage::Kind::color;
+    });
+}
+
+Recording record(const ChainEntry& entry, const Facts& facts) {
+    const postfx_camera camera = abi_camera(facts.camera);
+    std::vector<const char*> attachments;
+    for (const std::string& name : facts.attachments)
+        attachments.push_back(name.c_str());
+    postfx_request request{};
+    request.struct_size = sizeof(request);
+    request.width = static_cast<std::uint32_t>(facts.width);
+    request.height = static_cast<std::uint32_t>(facts.height);
+    request.level = static_cast<std::uint32_t>(entry.level);
+    request.effect = entry.effect->abi;
+    request.values = entry.values.empty() ? nullptr : entry.values.front().data();
+    request.camera = &camera;
+    request.attachments = attachments.data();
+    request.attachment_count = static_cast<std::uint32_t>(attachments.size());
+
+    Recorder recorder(entry, facts);
+    const std::int32_t status = entry.effect->abi->plan(&request, &recorder.abi());
+    Recording recording = recorder.finish();
+    if (status != 0)
+        throw Error(Place{.effect = entry.name}, fmt::format("plan() failed with status {}", status));
+    return recording;
+}
+
+} // namespace postfx

@@ -1,0 +1,63 @@
+// Asking one effect for its passes: the host's side of postfx_builder.
+#pragma once
+
+#include <postfx/plan.hpp>
+
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace postfx {
+
+/// An image as one effect sees it. Handles of the ABI are indices into Recording::images plus 1.
+struct RecordedImage {
+    enum class Kind { color, attachment, output } kind = Kind::color;
+    std::string attachment; ///< its name
+    int pass = -1;          ///< into Recording::passes
+    int output = 0;         ///< of that pass
+    int width = 0, height = 0;
+};
+
+struct RecordedInput {
+    std::string name;
+    int image = -1; ///< into Recording::images
+    bool linear = false;
+};
+
+struct RecordedNumber {
+    std::string name;
+    bool integer = false;
+    int components = 1;
+    std::array<double, 4> value{};
+};
+
+struct RecordedPass {
+    std::string name;
+    const SourceInfo* source = nullptr;
+    bool compose = false;
+    std::vector<RecordedInput> inputs;
+    std::vector<RecordedNumber> values;
+    std::vector<RecordedNumber> constants;
+    std::vector<Format> formats; ///< one per output
+    int width = 0, height = 0;
+};
+
+struct Identity {
+    std::string moment, kind, reason;
+};
+
+/// What an effect answered: an identity, or passes of which the last and only the last is the compose.
+struct Recording {
+    std::optional<Identity> identity;
+    std::vector<RecordedImage> images;
+    std::vector<RecordedPass> passes;
+
+    /// Does this pass sample the chain's stored colour?
+    bool reads_color(const RecordedPass& pass) const;
+};
+
+/// Call the effect's plan(). Throws Error naming the chain entry when it refuses or declares something wrong.
+Recording record(const ChainEntry& entry, const Facts& facts);
+
+} // namespace postfx

@@ -1,0 +1,119 @@
+#include <postfx/report.hpp>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+
+namespace postfx {
+namespace {
+
+/// Where an input comes from, for people: the attachment, or the last pass before `reader` that wrote the
+/// target.
+std::string source_name(const Plan& plan, std::size_t reader, const ImageRef& image) {
+    if (image.kind == ImageRef::Kind::attachment) return plan.attachments[image.index];
+    for (std::size_t i = reader; i-- > 0;) {
+        const auto& outputs = plan.passes[i].outputs;
+        const auto at = std::find(outputs.begin(), outputs.end(), image);
+        if (at == outputs.end()) continue;
+        const auto output = at - outputs.begin();
+        return plan.passes[i].name + (output > 0 ? fmt::format(".{}", output) : "");
+    }
+    return "?";
+}
+
+nlohmann::ordered_json optional_json(const std::optional<double>& number) {
+    return number ? nlohmann::ordered_json(*number) : nlohmann::ordered_json(nullptr);
+}
+
+std::string time_text(const PassReport& pass) {
+    std::string text;
+    if (pass.cpu_ms) text += fmt::format("  {:8.2f} ms cpu", *pass.cpu_ms);
+    if (pass.wall_ms) text += fmt::format("  {:8.2f} ms wall", *pass.wall_ms);
+    if (pass.gpu_ms) text += fmt::format("  {:8.3f} ms gpu", *pass.gpu_ms);
+    return text;
+}
+
+} // namespace
+
+Report describe(const Plan& plan) {
+    Report report;
+    report.effects = plan.effects;
+    report.clock = "none: times were not asked for";
+    report.texture_bytes = plan.texture_bytes();
+    report.warnings = plan.warnings;
+    for (std::size_t i = 0; i < plan.passes.size(); ++i) {
+        const Pass& pass = plan.passes[i];
+        PassReport described;
+        described.name = pass.name;
+        described.effects = pass.effects;
+        described.width = pass.width;
+        described.height = pass.height;
+        described.format = format_info(pass.format).name;
+        for (const PassInput& input : pass.inputs) {
+            std::string name = source_name(plan, i, input.image);
+            if (std::find(described.reads.begin(), described.reads.end(), name) == described.reads.end()) {
+                described.reads.push_back(std::move(name));
+            }
+        }
+        report.passes.push_back(std::move(described));
+    }
+    return report;
+}
+
+std::string report_json(const Report& report) {
+    nlohmann::ordered_json json;
+    json["effects"] = nlohmann::ordered_json::array();
+    for (const PlannedEffect& effect : report.effects) {
+        json["effects"].push_back({{"id", effect.id},
+                                   {"name", effect.name},
+                                   {"status", status_name(effect.status)},
+                                   {"moment", effect.moment},
+                                   {"kind", effect.kind},
+                                   {"reason", effect.reason}});
+    }
+    json["passes"] = nlohmann::ordered_json::array();
+    for (const PassReport& pass : report.passes) {
+        json["passes"].push_back({{"name", pass.name},
+                                  {"effects", pass.effects},
+                                  {"width", pass.width},
+                                  {"height", pass.height},
+                                  {"format", pass.format},
+                                  {"reads", pass.reads},
+                                  {"cpu_ms", optional_json(pass.cpu_ms)},
+                                  {"wall_ms", optional_json(pass.wall_ms)},
+                                  {"gpu_ms", optional_json(pass.gpu_ms)}});
+    }
+    json["clock"] = report.clock;
+    json["texture_bytes"] = report.texture_bytes;
+    json["warnings"] = report.warnings;
+    return json.dump(2);
+}
+
+std::string report_text(const Report& report) {
+    std::size_t effect_width = 6, pass_width = 4;
+    for (const PlannedEffect& effect : report.effects)
+        effect_width = std::max(effect_width, effect.name.size());
+    for (const PassReport& pass : report.passes)
+        pass_width = std::max(pass_width, pass.name.size());
+
+    std::string text = "effects\n";
+    for (const PlannedEffect& effect : report.effects) {
+        const std::string moment = effect.moment.empty() ? "" : effect.moment + ": ";
+        text += fmt::format("  {:<{}}  {:<7}  {}{}\n", effect.name, effect_width, status_name(effect.status),
+                            moment, effect.reason);
+    }
+    text += "passes\n";
+    for (const PassReport& pass : report.passes) {
+        text += fmt::format("  {:<{}}  {:>4}x{:<4} {:<10}{}  reads {}\n", pass.name, pass_width, pass.width,
+                            pass.height, pass.format, time_text(pass), fmt::join(pass.reads, ", "));
+    }
+    text += fmt::format("textures  {:.1f} MiB\nclock     {}\n",
+                        static_cast<double>(report.texture_bytes) / (1024 * 1024), report.clock);
+    for (const std::string& warning : report.warnings)
+        text += fmt::format("warning   {}\n", warning);
+    return text;
+}
+
+} // namespace postfx

@@ -1,0 +1,20 @@
+// Catch2 with the main() of a GL test: without a GL 4.5 context it says why and exits with 77, which CTest
+// shows as skipped. Include it once per test executable, instead of <catch2/catch.hpp>.
+#pragma once
+
+#define CATCH_CONFIG_RUNNER
+#include <catch2/catch.hpp>
+
+#include "testing.hpp"
+
+#include <cstdio>
+
+int main(int argc, char** argv) {
+    std::string why;
+    if (!postfx::testing::has_gl(&why)) {
+        std::puts(("skipped, no GL 4.5 context: " + why).c_str());
+        return 77;
+    }
+    // Catch2 returns the number of failures, which might happen to be 77.
+    return Catch::Session().run(argc, argv) == 0 ? 0 : 1;
+}

@@ -1,0 +1,168 @@
+// Running effects for tests: one context, one catalog per process.
+#include <testing.hpp>
+
+#include <gl/context.hpp>
+#include <gl/objects.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+#include <optional>
+
+namespace postfx::testing {
+namespace {
+
+/// The process's context, or why there is none.
+struct Context {
+    std::unique_ptr<gl::HeadlessContext> context;
+    std::string problem;
+
+    static const Context& get() {
+        static const Context made = [] {
+            Context result;
+            try {
+                result.context = std::make_unique<gl::HeadlessContext>(true);
+            } catch (const Error& error) {
+                result.problem = error.what();
+            }
+            return result;
+        }();
+        return made;
+    }
+};
+
+void require_gl() {
+    std::string why;
+    if (!has_gl(&why)) throw Error(why);
+}
+
+const Catalog& catalog() {
+    static const Catalog found = Catalog::discover();
+    return found;
+}
+
+Facts facts_of(const Input& input, Format working_format) {
+    Facts facts;
+    facts.width = input.color.width;
+    facts.height = input.color.height;
+    facts.camera = input.camera;
+    for (const auto& [name, image] : input.attachments)
+        facts.attachments.push_back(name);
+    facts.working_format = working_format;
+    facts.output = Output::linear;
+    return facts;
+}
+
+Chain single(const std::string& effect, const Values& values) {
+    Chain chain;
+    ChainEntry& entry = chain.add(catalog(), effect);
+    for (const auto& [id, value] : values) {
+        const std::size_t dot = id.find('.');
+        const std::string parameter = id.substr(0, dot);
+        if (parameter == "quality") {
+            entry.level = static_cast<int>(value);
+        } else if (dot != id.npos) {
+            const auto index = entry.effect->find_parameter(parameter);
+            if (!index) throw Error(fmt::format("{} has no parameter {}", effect, parameter));
+            entry.values[*index][static_cast<std::size_t>(id[dot + 1] - '0')] = value;
+        } else if (!entry.set(parameter, value)) {
+            throw Error(fmt::format("{}.{} = {} is out of range", effect, id, value));
+        }
+    }
+    return chain;
+}
+
+/// Four channels, alpha 1 where there was none.
+Image with_alpha(const Image& image) {
+    if (image.channels == 4) return image;
+    Image result(image.width, image.height, 4, 1.0f);
+    for (std::size_t i = 0; i < image.pixel_count(); ++i) {
+        for (int c = 0; c < std::min(image.channels, 3); ++c) {
+            result.values[4 * i + c] = image.values[image.channels * i + c];
+        }
+    }
+    return result;
+}
+
+Image run(const Chain& chain, const Input& input, const Facts& facts) {
+    require_gl();
+    static Planner planner;
+    const Plan plan = planner.plan(chain, facts);
+    Executor executor;
+    executor.prepare(plan);
+
+    std::vector<gl::Texture> textures;
+    FrameInputs frame;
+    for (const std::string& name : plan.attachments) {
+        const Image& image = name == "color" ? input.color : input.attachments.at(name);
+        const bool data = name == "depth";
+        textures.emplace_back(image.width, image.height, data ? Format::r32f : Format::rgba32f);
+        textures.back().upload(data ? image : with_alpha(image));
+        frame.textures.push_back(textures.back().name());
+    }
+    frame.camera = input.camera;
+    frame.time = input.time;
+    frame.frame = input.frame;
+    frame.seed = input.seed;
+    executor.run(frame);
+    Image picture = executor.read_picture();
+    const std::vector<std::string> messages = gl::take_debug_messages();
+    if (!messages.empty()) throw Error("OpenGL says: " + messages.front());
+    return picture;
+}
+
+} // namespace
+
+bool has_gl(std::string* why) {
+    const Context& context = Context::get();
+    if (why) *why = context.problem;
+    return context.context != nullptr;
+}
+
+Image run_effect(const std::string& effect, const Input& input, const Values& values, Format working_format) {
+    return run(single(effect, values), input, facts_of(input, working_format));
+}
+
+Image run_chain(const std::string& yaml, const Input& input, Format working_format, bool fuse) {
+    Facts facts = facts_of(input, working_format);
+    facts.fuse = fuse;
+    return run(parse_chain(yaml, "test.yaml", catalog()), input, facts);
+}
+
+Plan plan_effect(const std::string& effect, const Input& input, const Values& values) {
+    return Planner().plan(single(effect, values), facts_of(input, Format::rgba32f));
+}
+
+double ReferenceInput::value(const std::string& id) const {
+    const auto found = values.find(id);
+    if (found == values.end()) throw Error("the reference asks for an undeclared parameter: " + id);
+    return found->second;
+}
+
+ReferenceInput reference_input(const std::string& effect, const Input& input, const Values& values) {
+    ReferenceInput result;
+    result.color = convert<double>(input.color);
+    for (const auto& [name, image] : input.attachments)
+        result.attachments[name] = convert<double>(image);
+    result.camera = input.camera;
+    result.time = input.time;
+    result.frame = input.frame;
+    result.seed = input.seed;
+    const Chain chain = single(effect, values);
+    const ChainEntry& entry = chain.entries.front();
+    for (std::size_t i = 0; i < entry.values.size(); ++i) {
+        const ParameterInfo& parameter = entry.effect->parameters[i];
+        if (parameter.components() == 1) {
+            result.values[parameter.id] = entry.values[i][0];
+        } else {
+            for (int c = 0; c < parameter.components(); ++c) {
+                result.values[fmt::format("{}.{}", parameter.id, c)] = entry.values[i][c];
+            }
+        }
+    }
+    result.values["quality"] = entry.level;
+    return result;
+}
+
+} // namespace postfx::testing
