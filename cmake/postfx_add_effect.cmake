@@ -1,7 +1,7 @@
-# postfx_add_effect(<name> [DIRECTORY <dir>])
+# postfx_add_effect(<name> [DIRECTORY <dir>] [OUTPUT_DIRECTORY <dir>])
 #
 # Builds one effect from its folder: <name>.cpp (and other *.cpp but reference.cpp and test.cpp) with every *.glsl
-# embedded, as the plugin <build>/postfx_plugins/postfx_<name>.so. With test.cpp and reference.cpp there, also the test
+# embedded, as the plugin postfx_<name>.so in OUTPUT_DIRECTORY (<build>/postfx_plugins). With test.cpp and reference.cpp there, also the test
 # <name>_gl_test. In the postfx tree it is called for every folder of plugins/; an out-of-tree effect calls it after
 # find_package(postfx).
 
@@ -23,9 +23,12 @@ function(postfx_embed_glsl target directory header)
 endfunction()
 
 function(postfx_add_effect name)
-  cmake_parse_arguments(effect "" "DIRECTORY" "" ${ARGN})
+  cmake_parse_arguments(effect "" "DIRECTORY;OUTPUT_DIRECTORY" "" ${ARGN})
   if(NOT effect_DIRECTORY)
     set(effect_DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR})
+  endif()
+  if(NOT effect_OUTPUT_DIRECTORY)
+    set(effect_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/postfx_plugins)
   endif()
   file(GLOB sources CONFIGURE_DEPENDS ${effect_DIRECTORY}/*.cpp)
   list(FILTER sources EXCLUDE REGEX "/(reference|test)\\.cpp$")
@@ -33,7 +36,7 @@ function(postfx_add_effect name)
   add_library(${target} MODULE ${sources})
   set_target_properties(${target} PROPERTIES
     PREFIX "" OUTPUT_NAME postfx_${name}
-    LIBRARY_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/postfx_plugins
+    LIBRARY_OUTPUT_DIRECTORY ${effect_OUTPUT_DIRECTORY}
     CXX_STANDARD 20 CXX_STANDARD_REQUIRED ON CXX_EXTENSIONS OFF
     CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON)
   target_link_libraries(${target} PRIVATE postfx::plugin_headers)
@@ -63,9 +66,11 @@ endfunction()
 function(postfx_add_effects_in directory)
   file(GLOB folders CONFIGURE_DEPENDS ${directory}/*)
   foreach(folder ${folders})
-    if(IS_DIRECTORY ${folder})
-      get_filename_component(name ${folder} NAME)
+    get_filename_component(name ${folder} NAME)
+    if(EXISTS ${folder}/${name}.cpp)
       postfx_add_effect(${name} DIRECTORY ${folder})
+    elseif(IS_DIRECTORY ${folder})
+      message(WARNING "${folder} is no effect: it has no ${name}.cpp")
     endif()
   endforeach()
 endfunction()

@@ -15,8 +15,8 @@ namespace postfx::testing {
 struct Input {
     Image color; ///< 3 or 4 channels, scene-linear
     std::map<std::string, Image>
-        attachments; ///< "depth" (1 channel, raw samples), "normal" (3), "emission" (3), ...
-    Camera camera;
+        attachments = {}; ///< "depth" (1 channel, raw samples), "normal" (3), "emission" (3), ...
+    Camera camera = {};
     double time = 0;
     std::uint32_t frame = 0;
     std::uint32_t seed = 0;

@@ -22,6 +22,8 @@ struct Camera {
     double depth_offset = 0.0;
     double sky_depth = 0.0; ///< the raw sample that means "nothing there"; compared exactly, never linearised
 
+    double focus_distance = 0; ///< metres along the view axis that the camera is focused on; 0 = not known
+
     /// Camera to world, column major, metres; the camera looks down its own -z.
     std::array<double, 16> view_to_world = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
 

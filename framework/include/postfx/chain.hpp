@@ -19,8 +19,9 @@ struct ChainEntry {
     int level = 0;             ///< index into effect->levels
     std::vector<Value> values; ///< one per parameter of the effect, within range
 
-    /// Set a value (all channels of a color); ints, toggles and choices are rounded. Out of range it is clamped and
-    /// false is returned; NaN changes nothing and returns false. Throws Error for an unknown parameter.
+    /// Set a value (all channels of a color); ints, toggles and choices are rounded. Out of range it is
+    /// clamped and false is returned; NaN changes nothing and returns false. Throws Error for an unknown
+    /// parameter.
     bool set(std::string_view parameter, double value);
 };
 
@@ -40,19 +41,19 @@ inline constexpr std::size_t max_chain_entries = 256;
 ///
 ///     include: default.yaml      # another chain, relative to this file; its effects come first
 ///     overrides:                 # by entry name: values, enabled and quality of included effects
-///       grain: {amount: 0}
+///       dust: {amount: 0}
 ///     effects:                   # optional when include is there
-///       - vignette               # with its defaults
-///       - bloom: {intensity: 0.2, quality: high, enabled: true, name: glow}
+///       - shade                  # with its defaults
+///       - blur: {radius: 0.2, quality: high, enabled: true, name: haze}
 ///
-/// A file is UTF-8 of at most 1 MiB, nested at most 16 deep, without YAML's anchors, aliases, merge keys and tags; at
-/// most 16 files include each other. Lines and columns count from 1, columns in characters.
+/// A file is UTF-8 of at most 1 MiB, nested at most 16 deep, without YAML's anchors, aliases, merge keys and
+/// tags; at most 16 files include each other. Lines and columns count from 1, columns in characters.
 Chain read_chain(const std::filesystem::path& file, const Catalog& catalog);
 
 /// The same from text; `origin` names it in messages and anchors relative includes.
 Chain parse_chain(const std::string& yaml, const std::filesystem::path& origin, const Catalog& catalog);
 
-/// One item of `effects:`, e.g. "bloom: {intensity: 0.2}" or "vignette", appended to `chain`.
+/// One item of `effects:`, e.g. "blur: {radius: 0.2}" or "shade", appended to `chain`.
 void parse_chain_entry(const std::string& yaml, const std::string& origin, const Catalog& catalog,
                        Chain& chain);
 

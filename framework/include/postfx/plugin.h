@@ -71,6 +71,7 @@ typedef struct postfx_camera {
     double vertical_extent; /* metres, when orthographic */
     double near_plane, far_plane;
     double depth_scale, depth_offset, sky_depth; /* see postfx/camera.hpp */
+    double focus_distance;                       /* metres along the view axis; 0 = not known */
 } postfx_camera;
 
 struct postfx_effect;

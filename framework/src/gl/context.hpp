@@ -9,19 +9,24 @@ namespace postfx::gl {
 
 struct DeviceInfo {
     std::string vendor, renderer, version;
-    std::string platform; ///< "EGL surfaceless", "EGL device 0 (/dev/dri/card0)", "GLFW"
+    std::string platform;  ///< "EGL surfaceless", "EGL device 0 (/dev/dri/card0)"; "" where current_device()
+                           ///< can't know
     bool software = false; ///< llvmpipe, softpipe, SwiftShader, ...: timer queries don't see draws
 };
 
 /// What the current context is. Needs a current context and loaded functions.
 DeviceInfo current_device();
 
-/// Load GL functions for the current context and check that it is 4.5 core; throws Error that says what was found and
-/// what to install. `loader` as in glad: void* (*)(const char*).
-void load_functions(void* (*loader)(const char*));
+/// How a window system finds a GL function: eglGetProcAddress, glfwGetProcAddress.
+using FunctionLoader = void (*(*)(const char* name))();
 
-/// A context of its own, current on this thread from construction on. Tries EGL devices with a GPU first, then Mesa
-/// surfaceless; POSTFX_GL=surfaceless|device forces one. KHR_debug output is on when `debug`.
+/// Load the GL functions of the current context and check that it is 4.5; throws Error that says what was
+/// found and what to install.
+void load_functions(FunctionLoader loader);
+
+/// A context of its own, current on this thread from construction on. Tries EGL devices with a GPU first,
+/// then Mesa surfaceless; POSTFX_GL=surfaceless|device forces one (`device` takes a software device too).
+/// KHR_debug output is on when `debug`. Throws Error with one reason per platform that was tried.
 class HeadlessContext {
 public:
     explicit HeadlessContext(bool debug = false);
@@ -37,12 +42,13 @@ private:
     DeviceInfo device_;
 };
 
-/// Collect KHR_debug messages above notification from now on, for the current context. Messages are kept (at most
-/// 1000) until taken.
+/// Collect KHR_debug messages above notification from now on, for the current context. Messages are kept per
+/// thread (at most 1000) until taken.
 void enable_debug_output();
 std::vector<std::string> take_debug_messages();
 
-/// A named group around commands, for RenderDoc, apitrace and the debug output.
+/// A named group around commands, for RenderDoc, apitrace and the debug output. Does nothing before GL is
+/// loaded.
 class DebugGroup {
 public:
     explicit DebugGroup(const char* name);

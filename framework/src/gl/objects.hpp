@@ -56,14 +56,15 @@ GLenum internal_format(Format format);
 class Texture : public Handle<destroy_texture> {
 public:
     Texture() = default;
-    /// glTextureStorage2D. `levels` mip levels.
+    /// glTextureStorage2D. `levels` mip levels. Throws Error on a size that the device can't have.
     Texture(int width, int height, Format format, int levels = 1);
 
     int width() const { return width_; }
     int height() const { return height_; }
     Format format() const { return format_; }
 
-    /// Upload level 0; the image's channel count must be the format's (extra channels of the format become 0, alpha 1).
+    /// Upload level 0. Channels that the image lacks become 0, alpha 1. Throws Error on another size or too
+    /// many channels.
     void upload(const Image& image);
 
 private:
@@ -71,21 +72,23 @@ private:
     Format format_ = Format::rgba8;
 };
 
-/// Level 0 of any 2D texture as floats, with the channels of its format. Waits for the GPU. NaN payloads survive for
-/// 32F formats.
+/// Level 0 of any 2D texture as floats, with the channels of its format. Waits for the GPU. NaN payloads
+/// survive in 32-bit formats.
 Image read_texture(GLuint texture, int width, int height, Format format);
-/// rgba8 codes, bottom row first.
+/// Level 0 of an 8-bit texture as codes, bottom row first.
 std::vector<unsigned char> read_texture_codes(GLuint texture, int width, int height, int channels);
 
 /// glCreateFramebuffers with these colour attachments and, if not 0, depth; checked for completeness.
 Framebuffer make_framebuffer(const std::vector<GLuint>& colors, GLuint depth = 0);
+/// `bytes` is at least 1; `data` may be null.
 Buffer make_buffer(std::size_t bytes, const void* data, GLbitfield flags = GL_DYNAMIC_STORAGE_BIT);
 VertexArray make_vertex_array();
 /// Clamp to edge; linear or nearest, no mips.
 Sampler make_sampler(bool linear);
 
-/// Compile and link. Throws Error: place.file:line from the first message in the driver's log, mapped through `files`
-/// (#line source-string number -> file name); `what` names the program.
+/// Compile and link; the binary can be retrieved. Throws Error with place.file and line from the first error
+/// in the driver's log, found through the sources' #line directives and `files` (by source-string number);
+/// `what` names the program.
 Program make_program(std::string_view vertex, std::string_view fragment, const std::string& what,
                      const std::vector<std::string>& files = {});
 

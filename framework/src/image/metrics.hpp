@@ -8,12 +8,17 @@
 namespace postfx {
 
 struct Difference {
-    double max_abs = 0;          ///< largest |a - b| over finite values
-    double rmse = 0;             ///< root mean square over all channels
-    double psnr = 0;             ///< 20 log10(peak / rmse) [dB]; infinity when equal
-    double ssim = 1;             ///< mean structural similarity of luma, 11x11 Gaussian sigma 1.5 (Wang et al. 2004)
-    std::size_t differing = 0;   ///< pixels with any channel that differs in bits (-0 and 0, NaN payloads included)
-    std::size_t non_finite = 0;  ///< pixels where one is finite and the other is not; never skipped silently
+    double max_abs = 0; ///< largest |a - b| where both are finite
+    double rmse = 0;    ///< root mean square over all channels; infinity if any pixel counts as non_finite
+    double psnr = 0;    ///< 20 log10(peak / rmse) [dB]; infinity when equal, -infinity if non_finite > 0
+    /// Mean structural similarity of luma, 11x11 Gaussian of sigma 1.5 (Wang et al. 2004), the window that
+    /// fits for smaller pictures; 0 if non_finite > 0.
+    double ssim = 1;
+    /// Pixels with any channel that differs in bits (-0 and 0, NaN payloads included).
+    std::size_t differing = 0;
+    /// Pixels with a NaN or infinity that the other does not have; never skipped silently.
+    std::size_t non_finite = 0;
+    /// Where max_abs is; the first pixel of non_finite if there is one.
     int worst_x = 0, worst_y = 0;
 };
 

@@ -212,9 +212,18 @@ private:
 };
 
 postfx_camera abi_camera(const Camera& camera) {
-    return {sizeof(postfx_camera),  camera.orthographic, camera.tan_half_fov(),
-            camera.vertical_extent, camera.near_plane,   camera.far_plane,
-            camera.depth_scale,     camera.depth_offset, camera.sky_depth};
+    postfx_camera abi{};
+    abi.struct_size = sizeof(abi);
+    abi.orthographic = camera.orthographic;
+    abi.tan_half_fov = camera.tan_half_fov();
+    abi.vertical_extent = camera.vertical_extent;
+    abi.near_plane = camera.near_plane;
+    abi.far_plane = camera.far_plane;
+    abi.depth_scale = camera.depth_scale;
+    abi.depth_offset = camera.depth_offset;
+    abi.sky_depth = camera.sky_depth;
+    abi.focus_distance = camera.focus_distance;
+    return abi;
 }
 
 } // namespace

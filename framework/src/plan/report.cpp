@@ -35,6 +35,24 @@ std::string time_text(const PassReport& pass) {
     return text;
 }
 
+/// What an effect cost: its own passes, and those that it shares with others.
+std::string cost_text(const Report& report, const PlannedEffect& effect) {
+    double own = 0, shared = 0;
+    bool known = false;
+    for (const PassReport& pass : report.passes) {
+        const std::optional<double> time = pass.cpu_ms ? pass.cpu_ms : pass.gpu_ms;
+        const bool uses =
+            std::find(pass.effects.begin(), pass.effects.end(), effect.name) != pass.effects.end();
+        if (!uses || !time) continue;
+        known = true;
+        (pass.effects.size() == 1 ? own : shared) += *time;
+    }
+    if (!known) return "";
+    std::string text = own > 0 ? fmt::format("{:.1f} ms", own) : "";
+    if (shared > 0) text += fmt::format("{}{:.1f} ms shared", own > 0 ? " + " : "", shared);
+    return text + "; ";
+}
+
 } // namespace
 
 Report describe(const Plan& plan) {
@@ -101,8 +119,8 @@ std::string report_text(const Report& report) {
     std::string text = "effects\n";
     for (const PlannedEffect& effect : report.effects) {
         const std::string moment = effect.moment.empty() ? "" : effect.moment + ": ";
-        text += fmt::format("  {:<{}}  {:<7}  {}{}\n", effect.name, effect_width, status_name(effect.status),
-                            moment, effect.reason);
+        text += fmt::format("  {:<{}}  {:<7}  {}{}{}\n", effect.name, effect_width,
+                            status_name(effect.status), cost_text(report, effect), moment, effect.reason);
     }
     text += "passes\n";
     for (const PassReport& pass : report.passes) {

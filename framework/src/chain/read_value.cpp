@@ -1,0 +1,145 @@
+#include "chain/read_value.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+namespace postfx {
+namespace {
+
+[[noreturn]] void refuse(const YamlNode& node, std::string_view subject, std::string_view expected) {
+    throw Error(node.place, fmt::format("{}: expected {}, found {}", subject, expected, node.found()));
+}
+
+/// The node's decimal number (YAML 1.2 core schema, without .inf and .nan, which no parameter can take).
+double read_number(const YamlNode& node, std::string_view subject, std::string_view expected) {
+    std::string_view digits = node.text;
+    if (digits.starts_with('+')) digits.remove_prefix(1);
+    const bool decimal = node.is(YamlNode::Kind::scalar) && !node.quoted && !digits.starts_with("+")
+                         && digits.find_first_not_of("0123456789+-.eE") == std::string_view::npos
+                         && !node.text.starts_with("+-");
+    double value = 0;
+    const auto [end, failure] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
+    if (!decimal || end != digits.data() + digits.size() || failure == std::errc::invalid_argument) {
+        refuse(node, subject, expected);
+    }
+    if (failure == std::errc::result_out_of_range) {
+        throw Error(node.place, fmt::format("{}: {} does not fit a 64-bit float; expected {}", subject,
+                                            quote(node.text), expected));
+    }
+    return value == 0 ? 0.0 : value; // no negative zero: 1/x and sign tests in shaders see it
+}
+
+double read_number_in_range(const YamlNode& node, std::string_view subject, const ParameterInfo& parameter) {
+    const double value = read_number(node, subject, expected_value(parameter));
+    if (value < parameter.minimum || value > parameter.maximum) {
+        throw Error(node.place, fmt::format("{} = {} is outside {}", subject, value, range_text(parameter)));
+    }
+    return value;
+}
+
+double read_integer(const YamlNode& node, std::string_view subject, const ParameterInfo& parameter) {
+    const double value = read_number_in_range(node, subject, parameter);
+    if (value != std::floor(value)) {
+        throw Error(node.place, fmt::format("{} = {} is not whole; expected {}", subject, value,
+                                            expected_value(parameter)));
+    }
+    return value;
+}
+
+double read_choice(const YamlNode& node, std::string_view subject, const ParameterInfo& parameter) {
+    if (!node.is(YamlNode::Kind::scalar)) refuse(node, subject, expected_value(parameter));
+    const auto found = std::find(parameter.choices.begin(), parameter.choices.end(), node.text);
+    if (found == parameter.choices.end()) {
+        throw Error(node.place, fmt::format("{}: expected {}, found {}{}", subject, expected_value(parameter),
+                                            node.found(), did_you_mean(node.text, parameter.choices)));
+    }
+    return static_cast<double>(found - parameter.choices.begin());
+}
+
+Value read_color(const YamlNode& node, const std::string& subject, const ParameterInfo& parameter) {
+    if (!node.is(YamlNode::Kind::list)) {
+        const double grey = read_number_in_range(node, subject, parameter);
+        return {grey, grey, grey, 0};
+    }
+    if (node.items.size() != 3) {
+        throw Error(node.place, fmt::format("{}: expected {}, found {} of them", subject,
+                                            expected_value(parameter), node.items.size()));
+    }
+    constexpr const char* channels[] = {"red", "green", "blue"};
+    Value color{};
+    for (std::size_t i = 0; i < 3; ++i) {
+        color[i] = read_number_in_range(node.items[i], fmt::format("{} {}", subject, channels[i]), parameter);
+    }
+    return color;
+}
+
+} // namespace
+
+Value read_value(const YamlNode& node, const EffectInfo& effect, const ParameterInfo& parameter) {
+    const std::string subject = fmt::format("{}.{}", effect.id, parameter.id);
+    switch (parameter.kind) {
+    case ParameterKind::number:
+        return {read_number_in_range(node, subject, parameter), 0, 0, 0};
+    case ParameterKind::integer:
+        return {read_integer(node, subject, parameter), 0, 0, 0};
+    case ParameterKind::toggle:
+        return {read_toggle(node, subject) ? 1.0 : 0.0, 0, 0, 0};
+    case ParameterKind::choice:
+        return {read_choice(node, subject, parameter), 0, 0, 0};
+    case ParameterKind::color:
+        return read_color(node, subject, parameter);
+    }
+    throw Error(fmt::format("{} is of an unknown kind", subject));
+}
+
+bool read_toggle(const YamlNode& node, std::string_view subject) {
+    const bool plain = node.is(YamlNode::Kind::scalar) && !node.quoted;
+    if (plain && node.text == "true") return true;
+    if (plain && node.text == "false") return false;
+    refuse(node, subject, "true or false");
+}
+
+std::string expected_value(const ParameterInfo& parameter) {
+    switch (parameter.kind) {
+    case ParameterKind::number:
+        return "a number in " + range_text(parameter);
+    case ParameterKind::integer:
+        return "a whole number in " + range_text(parameter);
+    case ParameterKind::toggle:
+        return "true or false";
+    case ParameterKind::choice:
+        return "one of " + join(parameter.choices);
+    case ParameterKind::color:
+        return "[red, green, blue] or one number, each in " + range_text(parameter);
+    }
+    return {};
+}
+
+std::string range_text(const ParameterInfo& parameter) {
+    const std::string unit = parameter.unit.empty() ? "" : fmt::format(" ({})", parameter.unit);
+    return fmt::format("{}..{}{}", parameter.minimum, parameter.maximum, unit);
+}
+
+std::string join(const std::vector<std::string>& words) {
+    return fmt::format("{}", fmt::join(words, ", "));
+}
+
+std::string nearest_or_all(std::string_view word, const std::vector<std::string>& known) {
+    const std::string nearest = did_you_mean(word, known);
+    return nearest.empty() ? "; expected one of " + join(known) : nearest;
+}
+
+std::string unknown_parameter(const EffectInfo& effect, std::string_view id,
+                              const std::vector<std::string>& reserved) {
+    std::vector<std::string> known;
+    for (const ParameterInfo& parameter : effect.parameters)
+        known.push_back(parameter.id);
+    known.insert(known.end(), reserved.begin(), reserved.end());
+    return fmt::format("{} has no parameter {}{}", effect.id, quote(id), nearest_or_all(id, known));
+}
+
+} // namespace postfx

@@ -1,0 +1,126 @@
+#include <image/formats.hpp>
+#include <image/srgb.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+#include <memory>
+
+#define STB_IMAGE_STATIC
+#define STB_IMAGE_IMPLEMENTATION
+#define STBI_ONLY_PNG
+#define STBI_ONLY_JPEG
+#define STBI_NO_STDIO
+#define STBI_MAX_DIMENSIONS 32768
+#include <stb_image.h>
+
+#define STB_IMAGE_WRITE_STATIC
+#define STB_IMAGE_WRITE_IMPLEMENTATION
+#define STBI_WRITE_NO_STDIO
+#include <stb_image_write.h>
+
+namespace postfx::formats {
+namespace {
+
+static_assert(STBI_MAX_DIMENSIONS == max_side);
+
+/// Is the end-of-image marker there? stb_image paints what is missing grey and says nothing.
+bool jpeg_is_whole(std::string_view bytes) {
+    const auto byte = [&](std::size_t i) { return static_cast<std::uint8_t>(bytes[i]); };
+    for (std::size_t at = 2; at + 1 < bytes.size();) {
+        // Between markers is entropy-coded data, in which 0xff stands before 0, a restart marker or a fill
+        // byte only.
+        const std::uint8_t marker = byte(at + 1);
+        const bool is_marker =
+            byte(at) == 0xff && marker != 0 && marker != 0xff && (marker < 0xd0 || marker > 0xd7);
+        if (!is_marker) {
+            ++at;
+            continue;
+        }
+        if (marker == 0xd9) return true;
+        if (at + 3 >= bytes.size()) return false;
+        at += 2
+              + (std::size_t{byte(at + 2)} << 8
+                 | byte(at + 3)); // a segment may hold a thumbnail with an end of its own
+    }
+    return false;
+}
+
+/// Scene value of every code.
+std::vector<float> decoding_table(std::size_t codes, Meaning meaning) {
+    std::vector<float> table(codes);
+    for (std::size_t code = 0; code < codes; ++code) {
+        const double value = static_cast<double>(code) / static_cast<double>(codes - 1);
+        table[code] = static_cast<float>(meaning == Meaning::light ? srgb_to_linear(value) : value);
+    }
+    return table;
+}
+
+template<class Code>
+Image decoded(const Code* codes, int width, int height, int channels, Meaning meaning) {
+    constexpr std::size_t code_count = std::size_t{std::numeric_limits<Code>::max()} + 1;
+    const std::vector<float> color = decoding_table(code_count, meaning);
+    const std::vector<float> alpha = decoding_table(code_count, Meaning::data);
+    const int color_channels = channels - (channels == 2 || channels == 4 ? 1 : 0);
+    Image image(width, height, channels);
+    for (int y = height - 1; y >= 0; --y)
+        for (int x = 0; x < width; ++x)
+            for (int channel = 0; channel < channels; ++channel)
+                image.at(x, y, channel) = (channel < color_channels ? color : alpha)[*codes++];
+    return image;
+}
+
+struct FreeCodes {
+    void operator()(void* codes) const { stbi_image_free(codes); }
+};
+
+} // namespace
+
+bool is_png(std::string_view bytes) {
+    return bytes.starts_with("\x89PNG\r\n\x1a\n");
+}
+
+bool is_jpeg(std::string_view bytes) {
+    return bytes.starts_with("\xff\xd8\xff");
+}
+
+CodedImage read_png_or_jpeg(const Path& file, std::string_view bytes, Meaning meaning) {
+    const char* kind = is_png(bytes) ? "PNG" : "JPEG";
+    if (bytes.size() > static_cast<std::size_t>(std::numeric_limits<int>::max()))
+        fail(file, fmt::format("absurd size: a {} of {} bytes", kind, bytes.size()));
+    const auto* data = reinterpret_cast<const stbi_uc*>(bytes.data());
+    const int size = static_cast<int>(bytes.size());
+    const auto check = [&](bool good) {
+        if (!good) fail(file, fmt::format("truncated or damaged {} ({})", kind, stbi_failure_reason()));
+    };
+    int width = 0, height = 0, channels = 0;
+    check(stbi_info_from_memory(data, size, &width, &height, &channels) != 0);
+    check_size(file, width, height);
+    if (is_jpeg(bytes) && !jpeg_is_whole(bytes)) fail(file, "truncated JPEG: its end marker is missing");
+
+    if (stbi_is_16_bit_from_memory(data, size)) {
+        const std::unique_ptr<stbi_us, FreeCodes> codes(
+            stbi_load_16_from_memory(data, size, &width, &height, &channels, 0));
+        check(codes != nullptr);
+        return {decoded(codes.get(), width, height, channels, meaning), false};
+    }
+    const std::unique_ptr<stbi_uc, FreeCodes> codes(
+        stbi_load_from_memory(data, size, &width, &height, &channels, 0));
+    check(codes != nullptr);
+    return {decoded(codes.get(), width, height, channels, meaning), true};
+}
+
+std::string png_bytes(const Path& file, const BasicImage<std::uint8_t>& codes) {
+    const BasicImage<std::uint8_t> rows = upside_down(codes);
+    std::string bytes;
+    const auto append = [](void* to, void* from, int size) {
+        static_cast<std::string*>(to)->append(static_cast<const char*>(from), static_cast<std::size_t>(size));
+    };
+    if (!stbi_write_png_to_func(append, &bytes, rows.width, rows.height, rows.channels, rows.values.data(),
+                                rows.width * rows.channels))
+        fail(file, fmt::format("no PNG could be made of {} x {} pixels", rows.width, rows.height));
+    return bytes;
+}
+
+} // namespace postfx::formats

@@ -1,0 +1,164 @@
+#include <image/files.hpp>
+#include <image/formats.hpp>
+#include <image/srgb.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cctype>
+#include <cerrno>
+#include <cmath>
+#include <cstring>
+#include <utility>
+
+#include <fcntl.h>
+#include <unistd.h>
+
+namespace postfx {
+namespace {
+
+using formats::fail;
+using formats::Path;
+
+std::string ending_of(const Path& file) {
+    std::string ending = file.extension().string();
+    std::transform(ending.begin(), ending.end(), ending.begin(),
+                   [](unsigned char letter) { return static_cast<char>(std::tolower(letter)); });
+    return ending;
+}
+
+[[noreturn]] void fail_writing(const Path& file, int code) {
+    fail(file, fmt::format("can't be written: {}", std::strerror(code)));
+}
+
+/// An open file; what is written is checked.
+class OutputDescriptor {
+public:
+    explicit OutputDescriptor(int descriptor) : descriptor_(descriptor) {}
+    ~OutputDescriptor() {
+        if (descriptor_ >= 0) ::close(descriptor_);
+    }
+    OutputDescriptor(const OutputDescriptor&) = delete;
+    OutputDescriptor& operator=(const OutputDescriptor&) = delete;
+
+    bool is_open() const { return descriptor_ >= 0; }
+    /// Write all and close; false with errno set when that fails, on close too (network file systems tell it
+    /// there).
+    bool write_and_close(std::string_view bytes) {
+        while (!bytes.empty()) {
+            const ssize_t written = ::write(descriptor_, bytes.data(), bytes.size());
+            if (written < 0 && errno == EINTR) continue;
+            if (written < 0) return false;
+            bytes.remove_prefix(static_cast<std::size_t>(written));
+        }
+        return ::close(std::exchange(descriptor_, -1)) == 0;
+    }
+
+private:
+    int descriptor_;
+};
+
+/// A name beside `file`, so that renaming never crosses file systems; short, as `file`'s own may be as long
+/// as names get.
+Path name_beside(const Path& file) {
+    static std::atomic<unsigned> count = 0;
+    return file.parent_path() / fmt::format(".postfx-{}-{}.new", ::getpid(), count++);
+}
+
+void check_image(const Path& file, int width, int height, int channels, std::size_t values) {
+    formats::check_size(file, width, height);
+    if (channels < 1 || channels > 4)
+        fail(file, fmt::format("can't be written: the picture has {} channels, expected 1 to 4", channels));
+    if (values != static_cast<std::size_t>(width) * height * channels)
+        fail(file,
+             fmt::format("can't be written: {} values for {} x {} x {}", values, width, height, channels));
+}
+
+/// The same picture with other channels: colour is repeated from one channel or cut to it, alpha is left out.
+Image with_color_channels(const Image& image, int channels) {
+    Image colors(image.width, image.height, channels);
+    for (std::size_t pixel = 0; pixel < image.pixel_count(); ++pixel)
+        for (int channel = 0; channel < channels; ++channel)
+            colors.values[pixel * channels + channel] =
+                image.values[pixel * image.channels + (image.channels < 3 ? 0 : channel)];
+    return colors;
+}
+
+BasicImage<std::uint8_t> display_codes(const Image& image) {
+    const bool has_alpha = image.channels == 2 || image.channels == 4;
+    BasicImage<std::uint8_t> codes(image.width, image.height, image.channels);
+    for (std::size_t i = 0; i < image.values.size(); ++i) {
+        const bool is_alpha = has_alpha && static_cast<int>(i % image.channels) == image.channels - 1;
+        const double value = image.values[i];
+        const double encoded = !is_alpha ? linear_to_srgb(value) : value > 0 ? std::min(value, 1.0) : 0.0;
+        codes.values[i] = static_cast<std::uint8_t>(std::lround(255 * encoded));
+    }
+    return codes;
+}
+
+std::string encoded(const Path& file, const Image& image, const ExrOptions& options) {
+    const std::string ending = ending_of(file);
+    if (ending == ".png") return formats::png_bytes(file, display_codes(image));
+    if (ending == ".exr") return formats::exr_bytes(file, image, options.half);
+    if (ending == ".hdr") return formats::hdr_bytes(with_color_channels(image, 3));
+    return formats::pfm_bytes(with_color_channels(image, image.channels < 3 ? 1 : 3));
+}
+
+} // namespace
+
+void check_writable_kind(const std::filesystem::path& file) {
+    static const std::vector<std::string> known = {".png", ".exr", ".hdr", ".pfm"};
+    const std::string ending = ending_of(file);
+    if (std::find(known.begin(), known.end(), ending) != known.end()) return;
+    fail(file, fmt::format("can't be written: its ending is \"{}\", expected one of {}{}", ending,
+                           fmt::join(known, ", "), ending.empty() ? "" : did_you_mean(ending, known)));
+}
+
+bool is_display_kind(const std::filesystem::path& file) {
+    return ending_of(file) == ".png";
+}
+
+void write_png(const std::filesystem::path& file, int width, int height, int channels,
+               const std::vector<std::uint8_t>& codes) {
+    check_image(file, width, height, channels, codes.size());
+    BasicImage<std::uint8_t> image;
+    image.width = width;
+    image.height = height;
+    image.channels = channels;
+    image.values = codes;
+    write_file_atomically(file, formats::png_bytes(file, image));
+}
+
+void write_image(const std::filesystem::path& file, const Image& image, const ExrOptions& options) {
+    check_writable_kind(file);
+    check_image(file, image.width, image.height, image.channels, image.values.size());
+    write_file_atomically(file, encoded(file, image, options));
+}
+
+void write_file_atomically(const std::filesystem::path& file, const std::string& bytes) {
+    std::error_code ignored;
+    const auto type = std::filesystem::status(file, ignored).type();
+    using std::filesystem::file_type;
+    if (type == file_type::directory) fail_writing(file, EISDIR);
+    // A device or a pipe can't be replaced and never holds half a file.
+    if (type == file_type::character || type == file_type::fifo) {
+        OutputDescriptor output(::open(file.c_str(), O_WRONLY | O_CLOEXEC));
+        if (!output.is_open() || !output.write_and_close(bytes)) fail_writing(file, errno);
+        return;
+    }
+    // Renaming would replace a protected file all the same, or a link instead of what it points at.
+    if (type == file_type::regular && ::access(file.c_str(), W_OK) != 0) fail_writing(file, errno);
+    const Path target =
+        std::filesystem::is_symlink(file, ignored) ? std::filesystem::weakly_canonical(file) : file;
+
+    const Path beside = name_beside(target);
+    OutputDescriptor output(::open(beside.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666));
+    if (!output.is_open()) fail_writing(file, errno);
+    if (output.write_and_close(bytes) && ::rename(beside.c_str(), target.c_str()) == 0) return;
+    const int code = errno;
+    ::unlink(beside.c_str());
+    fail_writing(file, code);
+}
+
+} // namespace postfx

@@ -1,0 +1,95 @@
+// postfx list: what there is to use, by name.
+#include "command.hpp"
+#include "effect_text.hpp"
+#include "options.hpp"
+#include "resources.hpp"
+#include "text_table.hpp"
+
+#include <fmt/format.h>
+
+#include <fstream>
+
+namespace postfx::host {
+namespace {
+
+/// The first sentence of the comment that a configuration file starts with; "" when it starts otherwise.
+std::string first_sentence(const std::filesystem::path& file) {
+    std::ifstream in(file);
+    std::string comment;
+    for (std::string line; std::getline(in, line) && line.starts_with("#");) {
+        const std::size_t text = line.find_first_not_of("# ");
+        if (text == line.npos) break;
+        comment += (comment.empty() ? "" : " ") + line.substr(text);
+        const std::size_t end = comment.find(". ");
+        if (end != comment.npos) return comment.substr(0, end);
+    }
+    if (comment.ends_with('.')) comment.pop_back();
+    return comment;
+}
+
+class ListCommand : public Command {
+public:
+    void declare(CLI::App& app) override {
+        app.add_option("WHAT", what_, "effects, scenes or chains")
+            ->required()
+            ->check(CLI::IsMember({"effects", "scenes", "chains"}));
+        app.add_flag(
+            "--json", json_,
+            "As JSON: effects as [{id, stage, help, version, module}], others as [{id, help, path}]");
+        app.add_flag("-v,--verbose", verbose_, "Also say from which file each comes");
+        catalog_.declare(app);
+    }
+
+    Status run() override {
+        const Json items = what_ == "effects" ? effects() : configs();
+        if (json_) {
+            fmt::print("{}\n", items.dump(2));
+        } else {
+            print(items);
+        }
+        return Status::success;
+    }
+
+private:
+    Json effects() const {
+        Json items = Json::array();
+        for (const EffectPtr& effect : catalog_.load().effects()) {
+            items.push_back({{"id", effect->id},
+                             {"stage", effect->stage},
+                             {"help", effect->help},
+                             {"version", effect->version},
+                             {"module", effect->module_path.string()}});
+        }
+        return items;
+    }
+
+    Json configs() const {
+        Json items = Json::array();
+        for (const std::string& name : config_names(what_)) {
+            const std::filesystem::path file = find_config(what_, name);
+            items.push_back({{"id", name}, {"help", first_sentence(file)}, {"path", file.string()}});
+        }
+        return items;
+    }
+
+    void print(const Json& items) const {
+        std::vector<std::vector<std::string>> rows;
+        for (const Json& item : items) {
+            std::vector<std::string>& row = rows.emplace_back();
+            for (const char* key : {"id", "stage", "help"}) {
+                if (item.contains(key)) row.push_back(item[key]);
+            }
+            if (verbose_) row.push_back(item[item.contains("module") ? "module" : "path"]);
+        }
+        fmt::print("{}", text_table(rows, 0));
+    }
+
+    CatalogOptions catalog_;
+    std::string what_;
+    bool json_ = false, verbose_ = false;
+};
+
+const Register<ListCommand> registered("list", "List the effects, scenes or chains that there are");
+
+} // namespace
+} // namespace postfx::host

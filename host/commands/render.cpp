@@ -1,0 +1,175 @@
+// postfx render: a scene through a chain to a picture or a numbered sequence.
+#include "command.hpp"
+#include "options.hpp"
+#include "picture.hpp"
+#include "report_output.hpp"
+#include "scene_input.hpp"
+
+#include "scene/renderer.hpp"
+
+#include <gl/context.hpp>
+#include <gl/objects.hpp>
+#include <image/files.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+
+namespace fs = std::filesystem;
+
+namespace postfx::host {
+namespace {
+
+constexpr std::array saveable = {"color", "depth", "normal", "emission", "ambient"};
+
+/// "name.png" -> "name_0007.png".
+fs::path numbered(const fs::path& file, int frame, int frames) {
+    const std::size_t digits = std::max<std::size_t>(4, std::to_string(frames - 1).size());
+    return file.parent_path()
+           / fmt::format("{}_{:0{}}{}", file.stem().string(), frame, digits, file.extension().string());
+}
+
+class RenderCommand : public Command {
+public:
+    void declare(CLI::App& app) override {
+        scene_options_.declare(app);
+        chain_options_.declare(app);
+        app.add_option(
+               "-o,--output", output_,
+               "Picture: .png (8 bit, dithered), .exr, .hdr, .pfm (float; scene-linear unless the chain tone "
+               "maps). Of a sequence: FILE_0000.png ...")
+            ->required()
+            ->type_name("FILE");
+        app.add_option("--frames", frames_, "Length of a sequence; 1 = one picture")
+            ->check(CLI::Range(1, 1000000))
+            ->capture_default_str();
+        app.add_option("--fps", fps_, "Frames per second of a sequence")
+            ->check(CLI::PositiveNumber)
+            ->capture_default_str();
+        app.add_option(
+               "--save", save_,
+               "Write attachments too: depth=FILE,normal=FILE,... (color, depth, normal, emission, ambient); "
+               "depth in metres along the view axis, 0 = nothing there")
+            ->type_name("NAME=FILE")
+            ->delimiter(',');
+        app.add_option("--working", working_, "Format of working targets")
+            ->check(CLI::IsMember({"rgba16f", "rgba32f"}))
+            ->capture_default_str();
+        app.add_option("--seed", seed_, "Seed of all noise")->capture_default_str();
+        catalog_options_.declare(app);
+        report_options_.declare(app);
+    }
+
+    Status run() override {
+        read_saves();
+        const Output output = output_for(output_);
+        const Catalog catalog = catalog_options_.load();
+        Chain chain = chain_options_.read(catalog);
+        const Scene scene = scene_options_.open();
+        Facts facts = scene_options_.facts(scene, scene_options_.time(), output);
+        facts.working_format = *format_by_name(working_);
+        check_parent(output_);
+
+        const gl::HeadlessContext context;
+        ChainRunner runner(std::move(chain), facts);
+        SceneRenderer renderer(scene);
+        ProgressBar progress("rendering", frames_);
+        for (int i = 0; i < frames_; ++i) {
+            render_frame(renderer, runner, scene, i);
+            progress.advance();
+        }
+        const fs::path told = frames_ == 1 ? fs::path(output_) : numbered(output_, frames_ - 1, frames_);
+        report_options_.tell(runner.executor().report(), told);
+        return Status::success;
+    }
+
+private:
+    void render_frame(SceneRenderer& renderer, ChainRunner& runner, const Scene& scene, int index) {
+        FrameInputs frame;
+        frame.time = scene_options_.time() + index / fps_;
+        frame.frame = static_cast<std::uint32_t>(index);
+        frame.seed = seed_;
+        if (index > 0) {
+            Facts facts = runner.facts();
+            facts.camera = scene.camera_at(frame.time);
+            runner.replan(facts);
+        }
+        const Facts& facts = runner.facts();
+        frame.camera = facts.camera;
+        std::vector<std::string> wanted = runner.attachments();
+        for (const auto& [name, file] : saves_) {
+            if (std::find(wanted.begin(), wanted.end(), name) == wanted.end()) wanted.push_back(name);
+        }
+        const Textures textures = renderer.render(facts.width, facts.height, frame.time, wanted).textures;
+        runner.run(textures, frame, Timing::off);
+        write_picture(runner, frames_ == 1 ? fs::path(output_) : numbered(output_, index, frames_), false);
+        for (const auto& [name, file] : saves_) {
+            save_attachment(textures.at(name), name, frames_ == 1 ? file : numbered(file, index, frames_),
+                            facts);
+        }
+        // The first draw of a program compiles it on some drivers, so that costs are told of a second one.
+        if (report_options_.wants_times() && index == frames_ - 1)
+            runner.run(textures, frame, Timing::profile);
+    }
+
+    static void save_attachment(std::uint32_t texture, const std::string& name, const fs::path& file,
+                                const Facts& facts) {
+        if (name != "depth") {
+            const Image image = gl::read_texture(texture, facts.width, facts.height, Format::rgba32f);
+            Image rgb(image.width, image.height, 3);
+            for (std::size_t i = 0; i < image.pixel_count(); ++i) {
+                std::copy_n(&image.values[4 * i], 3, &rgb.values[3 * i]);
+            }
+            return write_image(file, rgb);
+        }
+        Image depth = gl::read_texture(texture, facts.width, facts.height, Format::depth32f);
+        for (float& value : depth.values) {
+            const bool nothing = value == static_cast<float>(facts.camera.sky_depth);
+            value = nothing ? 0.0f : static_cast<float>(facts.camera.view_z(value));
+        }
+        write_image(file, depth);
+    }
+
+    void read_saves() {
+        for (const std::string& item : save_) {
+            const std::size_t equals = item.find('=');
+            const std::string name = item.substr(0, equals);
+            if (equals == item.npos || std::find(saveable.begin(), saveable.end(), name) == saveable.end()) {
+                throw Error(
+                    fmt::format("--save \"{}\" is not NAME=FILE with NAME one of color, depth, normal, "
+                                "emission, ambient{}",
+                                item, did_you_mean(name, {saveable.begin(), saveable.end()})));
+            }
+            saves_[name] = item.substr(equals + 1);
+            check_writable_kind(saves_[name]);
+            check_parent(saves_[name]);
+        }
+    }
+
+    /// Before anything slow: a folder that is not there would lose the picture at the end.
+    static void check_parent(const fs::path& file) {
+        const fs::path parent = file.parent_path();
+        if (parent.empty() || fs::is_directory(parent)) return;
+        std::error_code problem;
+        fs::create_directories(parent, problem);
+        if (problem)
+            throw Error(Place{.file = file.string()}, "its folder can't be made: " + problem.message());
+    }
+
+    SceneOptions scene_options_;
+    ChainOptions chain_options_{"cinematic"};
+    CatalogOptions catalog_options_;
+    ReportOptions report_options_;
+    std::string output_, working_ = "rgba16f";
+    std::vector<std::string> save_;
+    std::map<std::string, fs::path> saves_;
+    int frames_ = 1;
+    double fps_ = 30;
+    std::uint32_t seed_ = 0;
+};
+
+const Register<RenderCommand> registered("render", "Render a scene through a chain");
+
+} // namespace
+} // namespace postfx::host

@@ -1,0 +1,63 @@
+#include "options.hpp"
+
+#include "resources.hpp"
+
+#include <postfx/error.hpp>
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <cstdio>
+
+namespace postfx::host {
+
+void CatalogOptions::declare(CLI::App& app) {
+    app.add_option("--plugin-dir", plugin_directories_, "Look for effect plugins here first (repeatable)")
+        ->type_name("DIR");
+}
+
+Catalog CatalogOptions::load() const {
+    Catalog catalog = Catalog::discover({plugin_directories_.begin(), plugin_directories_.end()});
+    for (const std::string& note : catalog.notes())
+        fmt::print(stderr, "postfx: {}\n", note);
+    if (catalog.effects().empty()) {
+        throw Error("no effect plugins found; name their folder with --plugin-dir or POSTFX_PLUGIN_PATH");
+    }
+    return catalog;
+}
+
+void ChainOptions::declare(CLI::App& app) {
+    app.add_option("--chain", chain_, "Chain: a name from configs/chains/ or a YAML file")
+        ->type_name("CHAIN");
+    app.add_option("--effect", effects_,
+                   "Append one effect, as in a chain file: 'bloom: {intensity: 0.2}' (repeatable)")
+        ->type_name("YAML")
+        ->allow_extra_args(false);
+    app.footer(default_chain_.empty() ? ""
+                                      : "Without --chain and --effect the chain is " + default_chain_ + ".");
+}
+
+Chain ChainOptions::read(const Catalog& catalog) const {
+    Chain chain;
+    const std::string& name = chain_.empty() && effects_.empty() ? default_chain_ : chain_;
+    if (!name.empty()) chain = read_chain(find_config("chains", name), catalog);
+    for (const std::string& effect : effects_)
+        parse_chain_entry(effect, "--effect", catalog, chain);
+    return chain;
+}
+
+Size parse_size(const std::string& text) {
+    Size size;
+    const std::size_t x = text.find('x');
+    const auto read = [&](std::size_t from, std::size_t to, int& number) {
+        const auto result = std::from_chars(text.data() + from, text.data() + to, number);
+        return result.ec == std::errc() && result.ptr == text.data() + to && number >= 1 && number <= 16384;
+    };
+    if (x == text.npos || !read(0, x, size.width) || !read(x + 1, text.size(), size.height)) {
+        throw Error(
+            fmt::format("size \"{}\" is not WIDTHxHEIGHT with sides of 1 to 16384, such as 1280x720", text));
+    }
+    return size;
+}
+
+} // namespace postfx::host

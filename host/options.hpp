@@ -1,0 +1,46 @@
+// Options that several commands share.
+#pragma once
+
+#include <postfx/catalog.hpp>
+#include <postfx/chain.hpp>
+
+#include <CLI/CLI.hpp>
+
+#include <string>
+#include <vector>
+
+namespace postfx::host {
+
+/// --plugin-dir: which effects there are.
+class CatalogOptions {
+public:
+    void declare(CLI::App& app);
+    /// Plugins that were refused are told on stderr. Throws Error when no effect at all is found.
+    Catalog load() const;
+
+private:
+    std::vector<std::string> plugin_directories_;
+};
+
+/// --chain and --effect: which effects are used.
+class ChainOptions {
+public:
+    /// `default_chain` is used when neither option is given.
+    explicit ChainOptions(std::string default_chain) : default_chain_(std::move(default_chain)) {}
+    void declare(CLI::App& app);
+    /// The chain file's effects, then those of --effect in order.
+    Chain read(const Catalog& catalog) const;
+
+private:
+    std::string default_chain_;
+    std::string chain_;
+    std::vector<std::string> effects_;
+};
+
+/// "1280x720". Throws Error for anything else, or a side of 0 or above 16384.
+struct Size {
+    int width = 0, height = 0;
+};
+Size parse_size(const std::string& text);
+
+} // namespace postfx::host

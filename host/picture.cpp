@@ -1,0 +1,105 @@
+#include "picture.hpp"
+
+#include "resources.hpp"
+
+#include <gl/clock.hpp>
+#include <gl/objects.hpp>
+#include <image/files.hpp>
+
+#include <fmt/format.h>
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdio>
+
+namespace postfx::host {
+namespace {
+
+/// The first `channels` of each pixel.
+Image first_channels(const Image& image, int channels) {
+    if (image.channels == channels) return image;
+    Image result(image.width, image.height, channels);
+    for (std::size_t i = 0; i < image.pixel_count(); ++i) {
+        std::copy_n(&image.values[image.channels * i], channels, &result.values[channels * i]);
+    }
+    return result;
+}
+
+std::filesystem::path program_cache() {
+    const std::filesystem::path cache = cache_directory();
+    return cache.empty() ? cache : cache / "programs";
+}
+
+} // namespace
+
+ChainRunner::ChainRunner(Chain chain, Facts facts)
+    : chain_(std::move(chain)), facts_(std::move(facts)), plan_(planner_.plan(chain_, facts_)),
+      executor_(program_cache()) {
+    executor_.prepare(plan_);
+}
+
+void ChainRunner::replan(const Facts& facts) {
+    Plan plan = planner_.plan(chain_, facts);
+    executor_.prepare(plan);
+    plan_ = std::move(plan);
+    facts_ = facts;
+}
+
+std::uint32_t ChainRunner::run(const Textures& textures, FrameInputs frame, Timing timing) {
+    inputs_.textures.clear();
+    for (const std::string& name : plan_.attachments)
+        inputs_.textures.push_back(textures.at(name));
+    inputs_.camera = frame.camera;
+    inputs_.time = frame.time;
+    inputs_.frame = frame.frame;
+    inputs_.seed = frame.seed;
+    return executor_.run(inputs_, timing);
+}
+
+Output output_for(const std::filesystem::path& file) {
+    check_writable_kind(file);
+    return is_display_kind(file) ? Output::display : Output::linear;
+}
+
+void write_picture(ChainRunner& runner, const std::filesystem::path& file, bool keep_alpha) {
+    const int channels = keep_alpha ? 4 : 3;
+    if (runner.facts().output == Output::linear) {
+        write_image(file, first_channels(runner.executor().read_picture(), channels));
+        return;
+    }
+    const Image codes = first_channels(runner.executor().read_picture(), channels);
+    std::vector<std::uint8_t> bytes(codes.values.size());
+    std::transform(codes.values.begin(), codes.values.end(), bytes.begin(),
+                   [](float code) { return static_cast<std::uint8_t>(code * 255.0f + 0.5f); });
+    write_png(file, codes.width, codes.height, channels, bytes);
+}
+
+ProgressBar::ProgressBar(std::string what, int total)
+    : what_(std::move(what)), total_(total), start_seconds_(gl::HostTime::now().wall_ms / 1000),
+      terminal_(isatty(fileno(stderr)) != 0) {
+    draw();
+}
+
+ProgressBar::~ProgressBar() {
+    if (terminal_) fmt::print(stderr, "\r\033[K");
+}
+
+void ProgressBar::advance() {
+    ++done_;
+    draw();
+}
+
+void ProgressBar::draw() const {
+    if (!terminal_) return;
+    constexpr int width = 32;
+    const int filled = total_ > 0 ? width * done_ / total_ : 0;
+    const double elapsed = gl::HostTime::now().wall_ms / 1000 - start_seconds_;
+    const std::string left =
+        done_ > 0 ? fmt::format("{:.0f} s left", elapsed / done_ * (total_ - done_)) : std::string("...");
+    fmt::print(stderr, "\r\033[K{} [{:#<{}}{:.<{}}] {}/{}  {}", what_, "", filled, "", width - filled, done_,
+               total_, left);
+    std::fflush(stderr);
+}
+
+} // namespace postfx::host

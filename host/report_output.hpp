@@ -1,0 +1,25 @@
+// How a finished run is told: for people on stdout, or as JSON for scripts.
+#pragma once
+
+#include <postfx/report.hpp>
+
+#include <CLI/CLI.hpp>
+
+#include <filesystem>
+#include <string>
+
+namespace postfx::host {
+
+/// --json, --quiet and --no-times of commands that run a chain.
+class ReportOptions {
+public:
+    void declare(CLI::App& app);
+    bool wants_times() const { return !no_times_ && !quiet_; }
+    /// "wrote FILE" and the report, or {"output": FILE, ...report} as JSON.
+    void tell(const Report& report, const std::filesystem::path& output) const;
+
+private:
+    bool json_ = false, quiet_ = false, no_times_ = false;
+};
+
+} // namespace postfx::host

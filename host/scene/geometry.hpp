@@ -1,0 +1,74 @@
+// Triangle meshes and the primitives they are made from. Metres, y up, counter-clockwise fronts.
+#pragma once
+
+#include <glm/glm.hpp>
+
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+namespace postfx::host {
+
+struct Vertex {
+    glm::vec3 position{0};
+    glm::vec3 normal{0, 1, 0}; ///< unit
+    glm::vec2 uv{0};
+    glm::vec3 tint{1}; ///< multiplies the material's diffuse and emission
+};
+
+/// Axis-aligned box; empty until something was added.
+struct Bounds {
+    glm::vec3 low{std::numeric_limits<float>::infinity()};
+    glm::vec3 high{-std::numeric_limits<float>::infinity()};
+
+    bool empty() const { return low.x > high.x; }
+    void add(glm::vec3 point);
+    glm::vec3 center() const { return 0.5f * (low + high); }
+    /// Of the sphere around center() that holds the box.
+    float radius() const { return 0.5f * glm::length(high - low); }
+    /// The box around this box, transformed.
+    Bounds transformed(const glm::mat4& matrix) const;
+};
+
+struct Mesh {
+    std::vector<Vertex> vertices;
+    std::vector<std::uint32_t> indices; ///< three per triangle
+
+    bool empty() const { return indices.empty(); }
+    std::uint32_t add(const Vertex& vertex);
+    void triangle(std::uint32_t a, std::uint32_t b, std::uint32_t c);
+    /// Two triangles; corners counter-clockwise seen from the front.
+    void quad(std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t d);
+    /// A convex flat face of its own vertices; corners counter-clockwise seen from the front.
+    void face(const std::vector<glm::vec3>& corners, glm::vec3 tint = glm::vec3(1));
+    /// Another mesh, placed and tinted.
+    void append(const Mesh& other, const glm::mat4& placement, glm::vec3 tint = glm::vec3(1));
+
+    Bounds bounds() const;
+};
+
+/// Area-weighted normals from the triangles; vertices shared by triangles become smooth.
+void compute_normals(Mesh& mesh);
+
+/// Centred at the origin.
+Mesh box(glm::vec3 size);
+Mesh sphere(float radius, int segments);
+/// Horizontal, facing up; uv 0..1.
+Mesh plane(glm::vec2 size, int divisions);
+/// Around the y axis, from y = 0 up, closed.
+Mesh cylinder(float radius, float height, int segments);
+Mesh cone(float radius, float height, int segments);
+/// Around the y axis; `tube` is the radius of the ring's own circle.
+Mesh torus(float radius, float tube, int segments);
+
+/// One cross-section of a loft, at z: a rounded box (superellipse) or a rounded trapezoid.
+struct Section {
+    float z;
+    float half_width_bottom, half_width_top;
+    float bottom, top; ///< y
+};
+/// A closed skin through sections with z growing. `roundness`: exponent of the superellipse; 2 is an ellipse,
+/// larger is boxier.
+Mesh loft(const std::vector<Section>& sections, int segments, float roundness);
+
+} // namespace postfx::host

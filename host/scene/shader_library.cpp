@@ -1,0 +1,130 @@
+#include "shader_library.hpp"
+
+#include "view_block.hpp"
+
+#include <postfx/error.hpp>
+#include <postfx_scene_shaders.h>
+
+#include <fmt/format.h>
+
+#include <map>
+
+namespace postfx::host {
+namespace {
+
+/// A shader's text with the names of the files that it came from.
+class ShaderText {
+public:
+    ShaderText() {
+        text_ = fmt::format("#version 450 core\n"
+                            "const int SCENE_MAX_LIGHTS = {};\nconst int SCENE_MAX_SHADOWS = {};\n",
+                            max_lights, max_shadows);
+    }
+    ShaderText& file(const std::string& name) {
+        for (const postfx_source& source : postfx_embedded_sources) {
+            if (name == source.name) {
+                text_ += fmt::format("#line 1 {}\n{}\n", files_.size(), source.text);
+                files_.push_back(source.path);
+                return *this;
+            }
+        }
+        throw Error(fmt::format("the scene has no shader piece {}", name));
+    }
+    ShaderText& made(const std::string& text) {
+        text_ += fmt::format("#line 1 {}\n{}\n", files_.size(), text);
+        files_.push_back("generated outputs");
+        return *this;
+    }
+    const std::string& text() const { return text_; }
+    const std::vector<std::string>& files() const { return files_; }
+
+private:
+    std::string text_;
+    std::vector<std::string> files_;
+};
+
+std::string declare_outputs(const OutputNames& outputs) {
+    std::string text;
+    for (std::size_t i = 0; i < outputs.size(); ++i) {
+        text += fmt::format("layout(location = {}) out vec4 o_{};\n", i, outputs[i]);
+    }
+    return text;
+}
+
+/// Largest finite half float: light beyond it stays finite in the targets.
+constexpr const char* brightest = "vec3(65504.0)";
+
+std::string mesh_outputs(const OutputNames& outputs) {
+    const auto light = [](const std::string& value) {
+        return fmt::format("vec4(min(({}) * opacity, {}), opacity)", value, brightest);
+    };
+    const std::map<std::string, std::string> values = {
+        {"color", light("surface.emission + radiance.direct + radiance.ambient")},
+        {"normal", "vec4(normalize(mat3(u_view.world_to_view) * surface.normal), 1.0)"},
+        {"emission", light("surface.emission")},
+        {"ambient", light("radiance.ambient")},
+    };
+    std::string text =
+        declare_outputs(outputs) + "void scene_write(Surface surface, Radiance radiance, float opacity) {\n";
+    for (const std::string& output : outputs)
+        text += fmt::format("    o_{} = {};\n", output, values.at(output));
+    return text + "}\n";
+}
+
+std::string resolve_main(const OutputNames& outputs, int samples) {
+    std::string text = declare_outputs(outputs) + "layout(binding = 0) uniform sampler2DMS u_depth;\n";
+    for (std::size_t i = 0; i < outputs.size(); ++i) {
+        text += fmt::format("layout(binding = {}) uniform sampler2DMS u_{};\n", i + 1, outputs[i]);
+    }
+    text += "void main() {\n    ivec2 pixel = ivec2(gl_FragCoord.xy);\n"
+            "    int nearest = 0;\n    float depth = texelFetch(u_depth, pixel, 0).r;\n";
+    for (int i = 1; i < samples; ++i) {
+        text += fmt::format("    float depth_{0} = texelFetch(u_depth, pixel, {0}).r;\n"
+                            "    if (depth_{0} > depth) {{ depth = depth_{0}; nearest = {0}; }}\n",
+                            i);
+    }
+    text += "    gl_FragDepth = depth;\n";
+    for (const std::string& output : outputs) {
+        if (output == "normal") {
+            text += "    o_normal = texelFetch(u_normal, pixel, nearest);\n";
+            continue;
+        }
+        std::string sum;
+        for (int i = 0; i < samples; ++i) {
+            sum += fmt::format("{}texelFetch(u_{}, pixel, {})", i ? " + " : "", output, i);
+        }
+        text += fmt::format("    o_{} = ({}) * {};\n", output, sum, 1.0 / samples);
+    }
+    return text + "}\n";
+}
+
+gl::Program link(const ShaderText& vertex, const ShaderText& fragment, const std::string& what) {
+    // The two stages number their files alone; the fragment's names serve, as the larger of the two.
+    return gl::make_program(vertex.text(), fragment.text(), what, fragment.files());
+}
+
+} // namespace
+
+gl::Program make_mesh_program(const OutputNames& outputs, bool textured) {
+    ShaderText fragment;
+    fragment.file("view.glsl").file("material.glsl");
+    fragment.file(textured ? "surface_textured.glsl" : "surface_plain.glsl");
+    fragment.file("lighting.glsl").made(mesh_outputs(outputs)).file("mesh.frag.glsl");
+    return link(ShaderText().file("view.glsl").file("mesh.vert.glsl"), fragment, "scene mesh");
+}
+
+gl::Program make_shadow_program() {
+    return link(ShaderText().file("shadow.vert.glsl"), ShaderText().file("shadow.frag.glsl"), "scene shadow");
+}
+
+gl::Program make_sky_program() {
+    return link(ShaderText().file("view.glsl").file("sky.vert.glsl"),
+                ShaderText().file("view.glsl").file("sky.frag.glsl"), "scene sky");
+}
+
+gl::Program make_resolve_program(const OutputNames& outputs, int samples) {
+    return link(ShaderText().file("resolve.vert.glsl"), ShaderText().made(resolve_main(outputs, samples)),
+                "scene resolve");
+}
+
+} // namespace postfx::host

@@ -1,0 +1,33 @@
+#include "scene_input.hpp"
+
+#include "options.hpp"
+#include "resources.hpp"
+
+namespace postfx::host {
+
+void SceneOptions::declare(CLI::App& app) {
+    auto* scene = app.add_option("SCENE", default_scene_.empty() ? scene_ : default_scene_,
+                                 "A name from configs/scenes/, a scene file, or a model (glTF, OBJ, ...)");
+    if (default_scene_.empty()) scene->required();
+    app.add_option("--size", size_, "Of the picture, pixels")->type_name("WxH")->capture_default_str();
+    app.add_option("--time", time_, "Seconds after the scene's start")->capture_default_str();
+    app.add_flag("--no-fuse", no_fuse_, "Let every effect write its own target");
+}
+
+Scene SceneOptions::open() const {
+    return open_scene(default_scene_.empty() ? scene_ : default_scene_, data_directory() / "configs/scenes");
+}
+
+Facts SceneOptions::facts(const Scene& scene, double time, Output output) const {
+    const Size size = parse_size(size_);
+    Facts facts;
+    facts.width = size.width;
+    facts.height = size.height;
+    facts.camera = scene.camera_at(time);
+    facts.attachments = {"color", "depth", "normal", "emission", "ambient"};
+    facts.output = output;
+    facts.fuse = !no_fuse_;
+    return facts;
+}
+
+} // namespace postfx::host

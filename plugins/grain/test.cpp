@@ -1,0 +1,218 @@
+#include <gl_main.hpp>
+
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+using namespace postfx;
+using namespace postfx::testing;
+
+namespace {
+
+constexpr int side = 1024;
+constexpr double samples = double(side) * side;
+constexpr float infinity = std::numeric_limits<float>::infinity();
+
+/// Size of grains in heights for so many pixels of a patch.
+double pixels(double size) {
+    return size / side;
+}
+
+/// White grain of one pixel: every pixel is its own.
+const Values white = {{"amount", 0.1}, {"size", pixels(1)}, {"color", 1}};
+const Values clumped = {{"amount", 0.1}, {"size", pixels(3)}, {"color", 1}};
+
+Input patch(double u, std::uint32_t frame = 0, std::uint32_t seed = 0) {
+    const float value = static_cast<float>(u);
+    return {.color = constant(side, side, {value, value, value}), .frame = frame, .seed = seed};
+}
+
+/// How many independent numbers the mean of a patch of clumps is worth, at least. A corner of the lattice
+/// owns an area of sqrt(3)/2 size^2, and inside it the three weights divided by their root sum of squares sum
+/// to at most sqrt(3).
+double independent_samples(double size) {
+    return size <= 1 ? samples : samples / (3 * std::sqrt(0.75) * size * size);
+}
+
+struct Statistics {
+    double mean = 0, variance = 0;
+};
+
+Statistics statistics(const Image& image, int channel) {
+    Statistics result;
+    for (std::size_t i = 0; i < image.pixel_count(); ++i)
+        result.mean += image.values[image.channels * i + channel] / samples;
+    for (std::size_t i = 0; i < image.pixel_count(); ++i)
+        result.variance += std::pow(image.values[image.channels * i + channel] - result.mean, 2) / samples;
+    return result;
+}
+
+/// Correlation of one picture's channel with another's, moved by (dx, dy) and wrapped round.
+double correlation(const Image& a, int channel_a, const Image& b, int channel_b, int dx = 0, int dy = 0) {
+    const Statistics of_a = statistics(a, channel_a), of_b = statistics(b, channel_b);
+    double sum = 0;
+    for (int y = 0; y < side; ++y) {
+        for (int x = 0; x < side; ++x) {
+            sum += (a.at(x, y, channel_a) - of_a.mean)
+                   * (b.at((x + dx) % side, (y + dy) % side, channel_b) - of_b.mean);
+        }
+    }
+    return sum / samples / std::sqrt(of_a.variance * of_b.variance);
+}
+
+} // namespace
+
+TEST_CASE("the picture is the float64 reference's") {
+    const std::pair<int, int> sizes[] = {{1, 1}, {40, 1}, {1, 500}, {97, 61}, {120, 500}};
+    for (const auto& [width, height] : sizes) {
+        for (double size : {0.4, 1.1, 3.0, 8.0}) {
+            Values values = {{"amount", 0.2}, {"size", std::clamp(size / height, 0.0002, 0.02)}};
+            for (std::uint32_t frame : {0u, 100'000'000u, 0xffffffffu}) {
+                const Input input{.color = noise(width, height, -0.2f, 1.2f), .frame = frame, .seed = 7};
+                const Worst worst = worst_difference(run_effect("grain", input, values),
+                                                     reference(reference_input("grain", input, values)));
+                // Lattice coordinates up to 500 are rounded to 6e-5, the field changes by at most 8 per unit
+                // of them, and the standard deviation is at most 0.5 * 0.2.
+                INFO(width << "x" << height << ", grains of " << size << " pixels, frame " << frame);
+                CHECK(worst.absolute <= 5e-5);
+            }
+        }
+    }
+}
+
+TEST_CASE("amount 0 changes no bit") {
+    Image color = noise(33, 17, -5, 60);
+    color.at(0, 0, 0) = -0.0f;
+    color.at(1, 0, 1) = infinity;
+    const std::uint32_t payload = 0x7fc12345u;
+    std::memcpy(&color.at(2, 0, 2), &payload, sizeof(payload));
+    CHECK(same_bits(run_effect("grain", {.color = color}, {{"amount", 0}}), color));
+    CHECK(plan_effect("grain", {.color = color}, {{"amount", 0}}).effects.at(0).moment == "configuration");
+}
+
+TEST_CASE("the mean stays and the variance is amount^2 u (1 - u)") {
+    for (const Values& values :
+         {white, clumped, Values{{"amount", 0.1}, {"size", pixels(1.05)}, {"color", 0}}}) {
+        const double size = values.at("size") * side;
+        for (double u : {0.1, 0.18, 0.5, 0.8, 0.9}) {
+            const Image image = run_effect("grain", patch(u), values);
+            const double expected = 0.01 * u * (1 - u);
+            for (int c = 0; c < 3; ++c) {
+                const Statistics found = statistics(image, c);
+                INFO("u " << u << ", grains of " << size << " pixels, channel " << c);
+                // The constant input is a float.
+                CHECK(std::abs(found.mean - double(float(u)))
+                      <= 5 * std::sqrt(expected / independent_samples(size)));
+                CHECK(found.variance == Approx(expected).epsilon(0.02));
+            }
+        }
+    }
+}
+
+TEST_CASE("near black and white the tails are cut, the mean stays") {
+    for (double u : {1e-4, 1e-3, 0.01, 0.99, 0.999}) {
+        const Image image = run_effect("grain", patch(u), white);
+        const Statistics found = statistics(image, 0);
+        CAPTURE(u);
+        CHECK(std::abs(found.mean - double(float(u))) <= 5 * std::sqrt(found.variance / samples));
+        CHECK(found.variance <= 0.01 * u * (1 - u) * 1.02);
+        CHECK(found.variance > 0);
+    }
+}
+
+TEST_CASE("black, white and what lies outside pass as they are; the rest stays within 0..1") {
+    for (float u : {0.0f, 1.0f, -0.25f, 1.5f, 65504.0f}) {
+        const Input input{.color = constant(64, 64, {u, u, u})};
+        CHECK(same_bits(run_effect("grain", input, {{"amount", 1}}), input.color));
+    }
+    for (double size : {0.0002, 0.02}) {
+        const Image image =
+            run_effect("grain", {.color = noise(side, side, 0, 1)}, {{"amount", 1}, {"size", size}});
+        bool within = true;
+        for (float value : image.values)
+            within = within && value >= 0 && value <= 1;
+        CHECK(within);
+    }
+}
+
+TEST_CASE("no pixel knows another: neighbours, lags, tile periods") {
+    const Image image = run_effect("grain", patch(0.5), white);
+    for (int lag : {1, 2, 3, 4, 5, 6, 7, 8, 16, 32, 64, 128, 256, 512}) {
+        CAPTURE(lag);
+        CHECK(std::abs(correlation(image, 0, image, 0, lag, 0)) <= 5 / std::sqrt(samples));
+        CHECK(std::abs(correlation(image, 1, image, 1, 0, lag)) <= 5 / std::sqrt(samples));
+        CHECK(std::abs(correlation(image, 2, image, 2, lag, lag)) <= 5 / std::sqrt(samples));
+    }
+}
+
+TEST_CASE("clumps are as large as asked, alike in all directions, and end") {
+    const Image image = run_effect("grain", patch(0.5), clumped);
+    const double bound = 5 / std::sqrt(independent_samples(3));
+    const double right = correlation(image, 0, image, 0, 2, 0), up = correlation(image, 0, image, 0, 0, 2);
+    CHECK(correlation(image, 0, image, 0, 1, 0) > 0.6);
+    CHECK(right > 0.1);
+    CHECK(std::abs(right - up) <= bound);
+    // Two pixels share a corner of the lattice only within twice a triangle's height: 2 * 0.87 * 3 = 5.2
+    // pixels.
+    for (int lag : {6, 7, 8, 16, 32, 64, 128, 256, 500}) {
+        CAPTURE(lag);
+        CHECK(std::abs(correlation(image, 0, image, 0, lag, 0)) <= bound);
+        CHECK(std::abs(correlation(image, 0, image, 0, 0, lag)) <= bound);
+    }
+}
+
+TEST_CASE("the look does not change with resolution") {
+    // Grains of 2 pixels here are grains of 4 at twice the height: the same correlation at twice the lag.
+    const Image coarse = run_effect("grain", patch(0.5), {{"size", pixels(2)}, {"color", 1}});
+    const Image fine = run_effect("grain", patch(0.5), {{"size", pixels(4)}, {"color", 1}});
+    for (int lag : {1, 2, 3}) {
+        CHECK(correlation(coarse, 0, coarse, 0, lag, 0)
+              == Approx(correlation(fine, 0, fine, 0, 2 * lag, 0))
+                     .margin(5 / std::sqrt(independent_samples(4))));
+    }
+    // Pixels larger than grains: deviation times size is constant (Selwyn).
+    const double half = statistics(run_effect("grain", patch(0.5), {{"size", pixels(0.5)}}), 0).variance;
+    const double quarter = statistics(run_effect("grain", patch(0.5), {{"size", pixels(0.25)}}), 0).variance;
+    CHECK(half / quarter == Approx(4).epsilon(0.02));
+}
+
+TEST_CASE("frames and seeds are independent, also after weeks; the same frame has the same bits") {
+    for (const Values& values : {white, clumped}) {
+        const double bound = 5 / std::sqrt(independent_samples(values.at("size") * side));
+        for (std::uint32_t frame : {0u, 100'000'000u, 0xfffffffeu}) {
+            const Image now = run_effect("grain", patch(0.5, frame), values);
+            CAPTURE(frame);
+            CHECK(same_bits(now, run_effect("grain", patch(0.5, frame), values)));
+            CHECK(std::abs(correlation(now, 0, run_effect("grain", patch(0.5, frame + 1), values), 0))
+                  <= bound);
+            CHECK(std::abs(correlation(now, 0, run_effect("grain", patch(0.5, frame, 1), values), 0))
+                  <= bound);
+            CHECK(statistics(now, 0).variance == Approx(0.0025).epsilon(0.02));
+        }
+    }
+}
+
+TEST_CASE("channels correlate by 1 - color") {
+    for (double color : {0.0, 0.3, 1.0}) {
+        const Image image = run_effect("grain", patch(0.5), {{"size", pixels(1)}, {"color", color}});
+        for (int c = 0; c < 3; ++c) {
+            // Noise of the estimate, or float's rounding of the picture where all channels are equal.
+            CHECK(correlation(image, c, image, (c + 1) % 3)
+                  == Approx(1 - color).margin(5 / std::sqrt(samples)));
+        }
+    }
+}
+
+TEST_CASE("hostile pixels stay where they are") {
+    Image color = constant(33, 210, {0.5f, 1e-40f, 65504});
+    color.at(16, 16, 0) = infinity;
+    color.at(5, 5, 0) = -infinity;
+    color.at(20, 20, 0) = std::numeric_limits<float>::quiet_NaN();
+    for (double size : {0.0002, 0.02}) { // without and with clumps
+        const Image result = run_effect("grain", {.color = color}, {{"amount", 1}, {"size", size}});
+        int non_finite = 0;
+        for (float value : result.values)
+            non_finite += !std::isfinite(value);
+        CHECK(non_finite == 3);
+    }
+}

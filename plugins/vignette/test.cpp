@@ -1,0 +1,155 @@
+#include <gl_main.hpp>
+
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+using namespace postfx;
+using namespace postfx::testing;
+
+namespace {
+
+constexpr double ulp = 0x1p-23; // of 1
+constexpr float infinity = std::numeric_limits<float>::infinity();
+const Values natural = {{"model", 0}, {"strength", 1}};
+const Values artistic = {{"model", 1}, {"strength", 1}};
+
+Image gains(int width, int height, const Values& values) {
+    return run_effect("vignette", {.color = constant(width, height, {1, 1, 1})}, values);
+}
+
+/// Largest rounding error of the gain. Natural: 4 ulp, of which the reciprocal may take 2.5. Artistic: the
+/// same for the radius, which the cubic's steepest slope of 1.5 / softness then enlarges.
+double gain_tolerance(const Values& values) {
+    const auto softness = values.find("softness");
+    return values.at("model") == 0
+               ? 4 * ulp
+               : (4 + 4 * 1.5 / (softness == values.end() ? 0.9 : softness->second)) * ulp;
+}
+
+} // namespace
+
+TEST_CASE("the picture is the float64 reference's") {
+    const Values cases[] = {{{"model", 0}},
+                            natural,
+                            {{"model", 1}},
+                            artistic,
+                            {{"model", 1}, {"strength", 1}, {"radius", 0}, {"softness", 0.01}},
+                            {{"model", 1}, {"strength", 0.7}, {"roundness", 0}},
+                            {{"model", 1}, {"strength", 0.7}, {"roundness", 0.4}, {"radius", 2}}};
+    const std::pair<int, int> sizes[] = {{1, 1}, {1, 40}, {40, 1}, {97, 61}, {64, 36}};
+    for (const Values& values : cases) {
+        for (const auto& [width, height] : sizes) {
+            Input input{.color = noise(width, height, -5, 60)};
+            for (double fov : {10.0, 45.0, 150.0}) {
+                input.camera = Camera::perspective(fov, 0.1);
+                const Worst worst = worst_difference(run_effect("vignette", input, values),
+                                                     reference(reference_input("vignette", input, values)));
+                INFO(width << "x" << height << " at " << fov << " degrees");
+                CHECK(worst.absolute <= 60 * gain_tolerance(values));
+            }
+        }
+    }
+}
+
+TEST_CASE("strength 0 changes no bit") {
+    Image color = noise(33, 17, -5, 60);
+    color.at(0, 0, 0) = -0.0f;
+    color.at(1, 0, 1) = infinity;
+    const std::uint32_t payload = 0x7fc12345u;
+    std::memcpy(&color.at(2, 0, 2), &payload, sizeof(payload));
+    for (double model : {0.0, 1.0}) {
+        const Values values = {{"model", model}, {"strength", 0}};
+        CHECK(same_bits(run_effect("vignette", {.color = color}, values), color));
+        const Plan plan = plan_effect("vignette", {.color = color}, values);
+        CHECK(plan.passes.empty());
+        CHECK(plan.effects.at(0).moment == "configuration");
+    }
+}
+
+TEST_CASE("a parallel projection has no natural falloff") {
+    Input input{.color = noise(33, 17, -5, 60), .camera = Camera::parallel(10, 0.1, 100)};
+    CHECK(same_bits(run_effect("vignette", input, natural), input.color));
+    CHECK(plan_effect("vignette", input, natural).effects.at(0).moment == "scene");
+    CHECK(plan_effect("vignette", input, natural).effects.at(0).kind == "exact");
+    CHECK_FALSE(same_bits(run_effect("vignette", input, artistic), input.color));
+}
+
+TEST_CASE("the centre is untouched and the gain falls outwards, within 0..1") {
+    for (double model : {0.0, 1.0}) {
+        for (double strength : {0.001, 0.1, 1 / 3.0, 0.7, 1.0}) {
+            const Values values = {{"model", model}, {"strength", strength}, {"radius", 0}};
+            const Image image = gains(97, 61, values);
+            CHECK(image.at(48, 30, 0) == 1.0f);
+            bool falls = true, within = true;
+            for (int x = 49; x < 97; ++x)
+                falls = falls && image.at(x, 30, 0) <= image.at(x - 1, 30, 0);
+            for (float gain : image.values)
+                within = within && gain >= 0 && gain <= 1;
+            CHECK(falls);
+            CHECK(within);
+            CHECK(image.at(96, 60, 0) < 1.0f);
+        }
+    }
+    CHECK(gains(1, 1, natural).at(0, 0, 0) == 1.0f);
+    CHECK(gains(1, 1, artistic).at(0, 0, 0) == 1.0f);
+}
+
+TEST_CASE("the gain is symmetric on the screen, whatever the picture's shape") {
+    for (const Values& values : {natural, artistic}) {
+        const int width = 64, height = 37;
+        const Image image = gains(width, height, values);
+        int mirrored = 0;
+        double worst_turn = 0;
+        for (int y = 0; y < height; ++y) {
+            for (int x = 0; x < width; ++x) {
+                mirrored += image.at(x, y, 0) != image.at(width - 1 - x, y, 0);
+                mirrored += image.at(x, y, 0) != image.at(x, height - 1 - y, 0);
+            }
+        }
+        CHECK(mirrored == 0); // to the last bit
+        const int side = 63;
+        const Image wide = gains(side + 32, side, values);
+        for (int b = 0; b < side / 2; ++b) {
+            for (int a = 0; a < side / 2; ++a) {
+                const double there = wide.at((side + 32) / 2 + a, side / 2 + b, 0);
+                const double turned = wide.at((side + 32) / 2 + b, side / 2 + a, 0);
+                worst_turn = std::max(worst_turn, std::abs(there - turned));
+            }
+        }
+        CHECK(worst_turn <= 2 * gain_tolerance(values)); // the two directions round on their own
+    }
+}
+
+TEST_CASE("twice the light gives twice the picture to the last bit") {
+    const Image color = noise(41, 23, -5, 60);
+    for (const Values& values : {Values{}, natural, artistic}) {
+        const Image once = run_effect("vignette", {.color = color}, values);
+        for (float factor : {0x1p10f, 0x1p-10f}) {
+            Image scaled = color, expected = once;
+            for (float& value : scaled.values)
+                value *= factor;
+            for (float& value : expected.values)
+                value *= factor;
+            CHECK(same_bits(run_effect("vignette", {.color = scaled}, values), expected));
+        }
+    }
+}
+
+TEST_CASE("hostile pixels stay where they are, and no light times infinity is black") {
+    Image color = constant(33, 33, {65504, -65504, 1e-40f});
+    color.at(16, 16, 0) = infinity;
+    color.at(0, 0, 0) = -infinity;
+    color.at(32, 32, 0) = std::numeric_limits<float>::quiet_NaN();
+    color.at(32, 0, 0) = infinity;
+    const Values black_corners = {{"model", 1}, {"strength", 1}, {"radius", 0}, {"softness", 0.1}};
+    for (const Values& values : {natural, black_corners}) {
+        const Image result = run_effect("vignette", {.color = color}, values);
+        int non_finite = 0;
+        for (float value : result.values)
+            non_finite += !std::isfinite(value);
+        CHECK(non_finite == (values == natural ? 4 : 1));
+        CHECK(result.at(16, 16, 0) == infinity);
+        CHECK(result.at(32, 0, 0) == (values == natural ? infinity : 0.0f));
+    }
+}

@@ -1,0 +1,23 @@
+// Meshes: object space to clip space and world space.
+
+layout(location = 0) in vec3 a_position;
+layout(location = 1) in vec3 a_normal;
+layout(location = 2) in vec2 a_uv;
+layout(location = 3) in vec3 a_tint;
+
+layout(location = 0) uniform mat4 u_object_to_world;
+layout(location = 1) uniform mat3 u_normal_to_world;
+
+out vec3 v_position; // world, metres
+out vec3 v_normal;   // world, not unit
+out vec2 v_uv;
+out vec3 v_tint;
+
+void main() {
+    vec4 world = u_object_to_world * vec4(a_position, 1.0);
+    v_position = world.xyz;
+    v_normal = u_normal_to_world * a_normal;
+    v_uv = a_uv;
+    v_tint = a_tint;
+    gl_Position = u_view.world_to_clip * world;
+}

@@ -1,0 +1,29 @@
+// The fixture effects of tests/fixtures, for tests of the framework.
+#pragma once
+
+#include <postfx/catalog.hpp>
+
+#include <filesystem>
+#include <string>
+
+namespace postfx::testing {
+
+/// The module of tests/fixtures/<name>.
+inline std::filesystem::path fixture(const std::string& name) {
+    return std::filesystem::path(POSTFX_FIXTURES) / ("postfx_fixture_" + name + ".so");
+}
+
+/// Every fixture whose declarations are right (plans and shaders of some are not).
+inline const Catalog& fixtures() {
+    static const Catalog catalog = [] {
+        Catalog made;
+        for (const char* name : {"blur", "broken_shader", "curve", "faulty", "gauge", "grown", "many", "pack",
+                                 "plain_c", "shift", "split", "tint"}) {
+            made.load(fixture(name));
+        }
+        return made;
+    }();
+    return catalog;
+}
+
+} // namespace postfx::testing
