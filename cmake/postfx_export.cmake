@@ -1,0 +1,71 @@
+# What others build against: find_package(postfx) finds the build tree (-Dpostfx_DIR=<build>) or an installation
+# (<prefix>/lib/cmake/postfx) and provides
+#   postfx_add_effect(), postfx_warnings()
+#   postfx::plugin_headers   what an effect needs: headers only
+#   postfx::postfx           the embedding library
+#   postfx::testing          the harness of effects' tests
+#   postfx::gl_test_main     its main()
+include(CMakePackageConfigHelpers)
+
+set(config_dir lib/cmake/postfx)
+set(libraries postfx postfx_glad postfx_base postfx_image postfx_gl postfx_plugin postfx_chain postfx_plan
+              postfx_execute postfx_testing postfx_gl_test_main)
+
+# Inside the tree targets see its folders; to others they show the public headers.
+function(postfx_set_installed_headers target directory)
+  foreach(property INTERFACE_INCLUDE_DIRECTORIES INTERFACE_SYSTEM_INCLUDE_DIRECTORIES)
+    get_target_property(own ${target} ${property})
+    if(own)
+      set_target_properties(${target} PROPERTIES
+        ${property} "$<BUILD_INTERFACE:${own}>;$<INSTALL_INTERFACE:${directory}>")
+    endif()
+  endforeach()
+endfunction()
+
+foreach(target ${libraries} postfx_plugin_headers)
+  string(REGEX REPLACE "^postfx_" "" name ${target})
+  set_target_properties(${target} PROPERTIES EXPORT_NAME ${name})
+  if(NOT target MATCHES "^postfx_(testing|gl_test_main)$")
+    postfx_set_installed_headers(${target} include)
+  endif()
+endforeach()
+postfx_set_installed_headers(postfx_testing "include;include/postfx_testing")
+
+# Two exports, because an effect can be built on a machine that has none of the library's dependencies.
+install(TARGETS postfx_plugin_headers EXPORT postfx-plugin-targets)
+install(TARGETS ${libraries} EXPORT postfx-library-targets ARCHIVE DESTINATION lib)
+foreach(export postfx-plugin-targets postfx-library-targets)
+  export(EXPORT ${export} NAMESPACE postfx:: FILE ${PROJECT_BINARY_DIR}/${export}.cmake)
+  install(EXPORT ${export} NAMESPACE postfx:: DESTINATION ${config_dir})
+endforeach()
+
+# The same file for both; only the place of our CMake functions differs.
+set(POSTFX_FUNCTIONS_DIR ${PROJECT_SOURCE_DIR}/cmake)
+configure_file(cmake/postfx-config.cmake.in ${PROJECT_BINARY_DIR}/postfx-config.cmake @ONLY)
+set(POSTFX_FUNCTIONS_DIR "\${CMAKE_CURRENT_LIST_DIR}")
+configure_file(cmake/postfx-config.cmake.in ${PROJECT_BINARY_DIR}/installed/postfx-config.cmake @ONLY)
+write_basic_package_version_file(${PROJECT_BINARY_DIR}/postfx-config-version.cmake COMPATIBILITY SameMinorVersion)
+install(FILES ${PROJECT_BINARY_DIR}/installed/postfx-config.cmake ${PROJECT_BINARY_DIR}/postfx-config-version.cmake
+              cmake/postfx_add_effect.cmake cmake/postfx_warnings.cmake cmake/embed_glsl.cmake
+        DESTINATION ${config_dir})
+install(DIRECTORY framework/include/postfx DESTINATION include)
+install(DIRECTORY tests/harness/ DESTINATION include/postfx_testing FILES_MATCHING PATTERN "*.hpp")
+
+# The program finds its effects and data from its own place (catalog.hpp, host/resources.hpp).
+file(STRINGS framework/include/postfx/plugin.h abi_major REGEX "^#define POSTFX_ABI_MAJOR ")
+string(REGEX REPLACE "[^0-9]" "" abi_major ${abi_major})
+get_property(effects DIRECTORY PROPERTY BUILDSYSTEM_TARGETS)
+list(FILTER effects INCLUDE REGEX "^postfx_effect_")
+# A module whose effect's folder is gone would still be found and used.
+file(GLOB modules ${PROJECT_BINARY_DIR}/postfx_plugins/postfx_*.so)
+foreach(module ${modules})
+  string(REGEX REPLACE "^.*/postfx_(.*)\\.so$" "postfx_effect_\\1" target ${module})
+  if(NOT target IN_LIST effects)
+    file(REMOVE ${module})
+  endif()
+endforeach()
+if(effects)
+  install(TARGETS ${effects} LIBRARY DESTINATION lib/postfx/plugins-${abi_major})
+endif()
+install(TARGETS postfx_program RUNTIME DESTINATION bin)
+install(DIRECTORY configs templates DESTINATION share/postfx)

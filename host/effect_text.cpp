@@ -92,9 +92,10 @@ std::string identity_text(const ParameterInfo& parameter) {
 }
 
 std::string stage_text(const EffectInfo& effect) {
-    if (effect.stage == "scene_to_display") return "scene_to_display: from scene-linear light to the display";
-    if (effect.stage == "display") return "display: works on what the display shows, after the tone map";
-    return "scene: works on scene-linear light, before the tone map";
+    if (effect.stage == "scene_to_display")
+        return "scene_to_display (from scene-linear light to the display)";
+    if (effect.stage == "display") return "display (what the display shows, after the tone map)";
+    return "scene (scene-linear light, before the tone map)";
 }
 
 std::string reads_text(const EffectInfo& effect) {

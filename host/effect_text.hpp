@@ -22,7 +22,7 @@ std::string range_text(const ParameterInfo& parameter);
 /// The value at which the effect does nothing; "" when none is declared.
 std::string identity_text(const ParameterInfo& parameter);
 
-/// "scene: works on scene-linear light".
+/// "scene (scene-linear light, before the tone map)".
 std::string stage_text(const EffectInfo& effect);
 /// "color, depth": the chain's colour is always read.
 std::string reads_text(const EffectInfo& effect);

@@ -19,6 +19,20 @@ namespace {
 
 constexpr int bad_input = 2, broken = 3;
 
+/// CLI11 would say only that a subcommand is required.
+void check_command(const std::string& word) {
+    std::vector<std::string> names;
+    for (const RegisteredCommand& command : registered_commands())
+        names.push_back(command.name);
+    if (word.starts_with('-') || std::find(names.begin(), names.end(), word) != names.end()) return;
+    throw Error(
+        fmt::format("no command \"{}\"{} (postfx --help tells them all)", word, did_you_mean(word, names)));
+}
+
+std::string failure_message(const CLI::App*, const CLI::Error& error) {
+    return fmt::format("postfx: {} (--help tells more)\n", error.what());
+}
+
 int run(int argc, char** argv) {
     CLI::App app("postfx: scenes and images through chains of post-processing effects", "postfx");
     app.require_subcommand(1);
@@ -35,6 +49,8 @@ int run(int argc, char** argv) {
         sub->option_defaults()->always_capture_default();
         made.back()->declare(*sub);
     }
+    app.failure_message(failure_message);
+    if (argc > 1) check_command(argv[1]);
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {

@@ -13,7 +13,8 @@ namespace postfx::host {
 
 void CatalogOptions::declare(CLI::App& app) {
     app.add_option("--plugin-dir", plugin_directories_, "Look for effect plugins here first (repeatable)")
-        ->type_name("DIR");
+        ->type_name("DIR")
+        ->default_str("");
 }
 
 Catalog CatalogOptions::load() const {
@@ -30,8 +31,9 @@ void ChainOptions::declare(CLI::App& app) {
     app.add_option("--chain", chain_, "Chain: a name from configs/chains/ or a YAML file")
         ->type_name("CHAIN");
     app.add_option("--effect", effects_,
-                   "Append one effect, as in a chain file: 'bloom: {intensity: 0.2}' (repeatable)")
+                   "Append one effect, as in a chain file: 'glow: {intensity: 0.2}' (repeatable)")
         ->type_name("YAML")
+        ->default_str("")
         ->allow_extra_args(false);
     app.footer(default_chain_.empty() ? ""
                                       : "Without --chain and --effect the chain is " + default_chain_ + ".");

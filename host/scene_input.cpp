@@ -24,10 +24,17 @@ Facts SceneOptions::facts(const Scene& scene, double time, Output output) const 
     facts.width = size.width;
     facts.height = size.height;
     facts.camera = scene.camera_at(time);
-    facts.attachments = {"color", "depth", "normal", "emission", "ambient"};
+    facts.attachments = SceneRenderer::attachment_names();
     facts.output = output;
     facts.fuse = !no_fuse_;
     return facts;
+}
+
+Textures textures_of(const SceneFrame& frame) {
+    Textures textures;
+    for (const SceneAttachment& attachment : frame.attachments)
+        textures[attachment.name] = attachment.texture;
+    return textures;
 }
 
 } // namespace postfx::host

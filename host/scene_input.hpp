@@ -1,6 +1,9 @@
 // SCENE on the command line, with what goes along with it.
 #pragma once
 
+#include "picture.hpp"
+
+#include "scene/renderer.hpp"
 #include "scene/scene.hpp"
 
 #include <postfx/plan.hpp>
@@ -29,5 +32,8 @@ private:
     double time_ = 0;
     bool no_fuse_ = false;
 };
+
+/// The frame's textures by attachment name.
+Textures textures_of(const SceneFrame& frame);
 
 } // namespace postfx::host

@@ -1,5 +1,4 @@
 // EXR files, written here with the library itself where write_image has no such thing.
-#define CATCH_CONFIG_MAIN
 #include "image_checks.hpp"
 
 #include <ImfChannelList.h>

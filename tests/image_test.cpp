@@ -1,5 +1,4 @@
 // PNG, JPEG, HDR and PFM files. EXR has a test of its own.
-#define CATCH_CONFIG_MAIN
 #include "image_checks.hpp"
 
 #include <image/srgb.hpp>
@@ -291,7 +290,7 @@ TEST_CASE("The night sky of others") {
 
 TEST_CASE("Truncated files are refused") {
     const TemporaryDirectory directory;
-    const Image image = wide_range_image(20, 6);
+    const Image image = wide_range_image(9, 4);
     for (const char* name : {"a.hdr", "a.pfm", "a.png"}) {
         const std::filesystem::path file = directory / name;
         write_image(file, image);
@@ -316,10 +315,7 @@ TEST_CASE("Absurd sizes are refused before anything is allocated") {
     };
     for (const auto& [name, bytes] : files) {
         put_bytes(directory / name, bytes);
-        INFO(read_error(directory / name));
-        const bool names_the_cause = read_error(directory / name).find("absurd size") != std::string::npos
-                                     || read_error(directory / name).find("too large") != std::string::npos;
-        CHECK(names_the_cause);
+        CHECK(read_error(directory / name).find("absurd size") != std::string::npos);
     }
     put_bytes(directory / "e.pfm", "PF\nmany 5\n-1\n");
     CHECK(read_error(directory / "e.pfm").find("width") != std::string::npos);

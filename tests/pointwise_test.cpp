@@ -1,5 +1,4 @@
 // The scan that decides whether GLSL may be a compose function.
-#define CATCH_CONFIG_MAIN
 #include <catch2/catch.hpp>
 
 #include <plugin/pointwise.hpp>
@@ -103,7 +102,12 @@ TEST_CASE("what could reach further is refused, with line and reason") {
         {"/* never closed\nfloat a;\n", "line 1: has a comment without an end"},
         {"float f(float x) { return x; }\n/*\n#include \"other.glsl\"\n*/\n",
          "line 3: has an #include in a comment"},
-        {"/**/ float x; # undef y\n", "line 1: has a # inside a line"},
+        {"#include \"other.glsl\" /*\nfloat f() { return gl_FragCoord.x; }\n// */\n",
+         "line 1: has a comment behind an #include"},
+        {"#define SHADE_OPEN {\nout vec4 o_more;\n", "line 1: defines a macro that leaves a bracket open"},
+        {"#define SHADE_TURN } {\n", "line 1: closes a bracket that is not open"},
+        {"}\nout vec4 o_more;\n", "line 1: closes a bracket that is not open"},
+        {"/**/ float f(); # undef y\n", "line 1: has a # inside a line"},
         {function("    return color; /* a */ /* b */ discard;"), "line 2: uses discard"},
         {"/*/ gl_FragCoord /*/ uniform float x;\n", "line 1: uses uniform"},
         {"float f() { return 1.0 / /* x */ gl_FragCoord.x; }\n", "line 1: uses gl_FragCoord"},

@@ -1,3 +1,4 @@
-#define CATCH_CONFIG_MAIN
 #include <catch2/catch.hpp>
-TEST_CASE("x") { CHECK(true); }
+TEST_CASE("x") {
+    CHECK(true);
+}

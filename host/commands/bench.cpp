@@ -5,8 +5,6 @@
 #include "resources.hpp"
 #include "scene_input.hpp"
 
-#include "scene/renderer.hpp"
-
 #include <gl/clock.hpp>
 #include <gl/context.hpp>
 #include <gl/objects.hpp>
@@ -136,7 +134,7 @@ public:
         make_runners(catalog);
         const std::vector<std::string> wanted = wanted_attachments();
         const auto draw_scene = [&] {
-            return renderer.render(facts_.width, facts_.height, scene_options_.time(), wanted).textures;
+            return textures_of(renderer.render(facts_.width, facts_.height, scene_options_.time(), wanted));
         };
         const Textures textures = draw_scene();
 

@@ -9,17 +9,21 @@
 namespace postfx::host {
 namespace {
 
-std::string levels_text(const EffectInfo& effect) {
-    if (effect.levels.empty()) return "one quality only\n";
-    std::vector<std::vector<std::string>> rows;
+/// Rows of a table: "quality  low   fast enough for ..."
+std::vector<std::vector<std::string>> facts(const EffectInfo& effect) {
+    std::vector<std::vector<std::string>> rows = {{"stage", stage_text(effect)},
+                                                  {"reads", reads_text(effect)},
+                                                  {"module", effect.module_path.string()}};
     for (const LevelInfo& level : effect.levels) {
         const bool is_default = &level == &effect.levels.at(effect.default_level);
-        rows.push_back({level.id, level.help + (is_default ? " (default)" : "")});
+        const char* heading = &level == &effect.levels.front() ? "quality" : "";
+        rows.push_back(
+            {heading, fmt::format("{}{}: {}", level.id, is_default ? " (default)" : "", level.help)});
     }
-    return "\n" + text_table(rows, 2);
+    return rows;
 }
 
-/// "height, compiled in, does nothing at 0"
+/// "no effect at 0, compiled in"
 std::string remarks(const ParameterInfo& parameter) {
     std::vector<std::string> parts;
     if (parameter.identity) parts.push_back("no effect at " + identity_text(parameter));
@@ -29,39 +33,42 @@ std::string remarks(const ParameterInfo& parameter) {
 }
 
 std::string parameters_text(const EffectInfo& effect) {
-    if (effect.parameters.empty()) return "  none\n";
-    std::vector<std::vector<std::string>> rows = {{"", "TYPE", "DEFAULT", "RANGE", "UNIT", ""}};
+    if (effect.parameters.empty()) return "no parameters\n";
+    std::vector<std::vector<std::string>> rows = {{"PARAMETER", "TYPE", "DEFAULT", "RANGE", "UNIT", ""}};
     for (const ParameterInfo& parameter : effect.parameters) {
         rows.push_back({parameter.id, std::string(parameter.kind_name()),
                         value_text(parameter, parameter.default_value), range_text(parameter), parameter.unit,
                         remarks(parameter)});
     }
     // The table is made whole, so that columns agree; each parameter's help then goes below its row.
-    const std::string table = text_table(rows, 2);
+    const std::string table = text_table(rows, 0);
     std::string text = table.substr(0, table.find('\n') + 1);
     std::size_t at = text.size();
     for (const ParameterInfo& parameter : effect.parameters) {
         const std::size_t end = table.find('\n', at) + 1;
-        text += table.substr(at, end - at) + wrapped(parameter.help, 6);
+        text += table.substr(at, end - at) + wrapped(parameter.help, 4);
         at = end;
     }
     return text;
 }
 
 std::string effect_text(const EffectInfo& effect) {
-    return fmt::format("{} {}\n{}\n", effect.id, effect.version, effect.help)
-           + fmt::format("Stage: {}\nReads: {}\nFrom: {}\nQuality: {}", stage_text(effect),
-                         reads_text(effect), effect.module_path.string(), levels_text(effect))
-           + "Parameters:\n" + parameters_text(effect);
+    return fmt::format("{} {}: {}\n\n{}\n{}", effect.id, effect.version, effect.help,
+                       text_table(facts(effect), 2), parameters_text(effect));
 }
 
 class DescribeCommand : public Command {
 public:
     void declare(CLI::App& app) override {
-        app.add_option("EFFECT", effect_, "The effect's id, as `postfx list effects` tells it")->required();
-        app.add_flag("--json", json_,
-                     "As JSON: {id, version, help, stage, parameters: [{id, type, default, min, max, step, "
-                     "unit, identity, help, choices, constant}], reads, levels, default_level, module}");
+        app.add_option("EFFECT", effect_, "The effect's id, as `postfx list effects` tells it")
+            ->required()
+            ->type_name("");
+        app.add_flag("--json", json_, "As JSON");
+        app.footer("JSON: {id, version, help, stage, parameters: [{id, type, default, min, max, step, unit, "
+                   "identity,\n"
+                   "help, choices, constant}], reads, levels: [{id, help}], default_level, module}. What "
+                   "there is not\n"
+                   "is null: an identity, a range of words (choice) or booleans, a default_level.");
         catalog_.declare(app);
     }
 

@@ -104,8 +104,8 @@ Json finite_or_null(double value) {
 class DiffCommand : public Command {
 public:
     void declare(CLI::App& app) override {
-        app.add_option("A", a_, "Picture: PNG, JPEG, HDR, EXR or PFM")->required();
-        app.add_option("B", b_, "Picture of the same size")->required();
+        app.add_option("A", a_, "Picture: PNG, JPEG, HDR, EXR or PFM")->required()->type_name("");
+        app.add_option("B", b_, "Picture of the same size")->required()->type_name("");
         app.add_option("-o,--output", output_,
                        "Write the absolute difference: .png amplified (--gain), .exr, .hdr or .pfm as it is")
             ->type_name("FILE");
@@ -119,14 +119,14 @@ public:
         app.add_option("--min-psnr", min_psnr_, "Status 0 when the PSNR is at least this [dB]");
         app.add_option("--layer", layer_, "Compare this layer of two EXR files instead of the colour")
             ->type_name("NAME");
-        app.add_flag(
-            "--json", json_,
-            "As JSON: {max_abs, rmse, psnr, ssim, differing, non_finite, worst: {x, y}, pixels, peak, "
-            "compared, notes, passed}; psnr and rmse are null when infinite");
+        app.add_flag("--json", json_, "As JSON");
         app.footer(
             "Two 8-bit files are compared as their codes / 255, anything else as linear values.\n"
             "differing counts pixels with any difference in bits; worst is counted from the top left.\n"
             "A pixel that is not finite in one picture only is beyond every bound, and makes SSIM 0.\n"
+            "JSON: {max_abs, rmse, psnr, ssim, differing, non_finite, worst: {x, y}, pixels, peak, compared, "
+            "notes,\n"
+            "passed}; psnr is null when infinite (equal pictures), psnr and rmse with a non_finite pixel.\n"
             "Status: 0 equal (with --max-abs and --min-psnr: within both), 1 different, 2 bad input.");
     }
 

@@ -91,12 +91,17 @@ std::string index_page(const Catalog& catalog) {
     return text;
 }
 
+/// The help that `--help` prints. App::help() would give that of the running subcommand instead.
+std::string help_of(const CLI::App& app, const std::string& name) {
+    return "```text\n" + app.get_formatter()->make_help(&app, name, CLI::AppFormatMode::Normal) + "```\n";
+}
+
 std::string cli_page(const CLI::App& program) {
-    std::string text{generated};
-    text += fmt::format("\n# The program\n\n```text\n{}```\n", program.help());
+    std::string text =
+        fmt::format("{}\n# The program\n\n{}", generated, help_of(program, program.get_name()));
     for (const CLI::App* command : program.get_subcommands({})) {
-        text += fmt::format("\n## postfx {}\n\n```text\n{}```\n", command->get_name(),
-                            command->help("postfx " + command->get_name()));
+        const std::string name = program.get_name() + " " + command->get_name();
+        text += fmt::format("\n## {}\n\n{}", name, help_of(*command, name));
     }
     return text;
 }

@@ -32,12 +32,13 @@ public:
     void declare(CLI::App& app) override {
         app.add_option("WHAT", what_, "effects, scenes or chains")
             ->required()
-            ->check(CLI::IsMember({"effects", "scenes", "chains"}));
-        app.add_flag(
-            "--json", json_,
-            "As JSON: effects as [{id, stage, help, version, module}], others as [{id, help, path}]");
+            ->type_name("")
+            ->check(CLI::IsMember({"effects", "scenes", "chains"}).description(""));
+        app.add_flag("--json", json_, "As JSON");
         app.add_flag("-v,--verbose", verbose_, "Also say from which file each comes");
         catalog_.declare(app);
+        app.footer("JSON: effects as [{id, stage, help, version, module}], scenes and chains as [{id, help, "
+                   "path}].");
     }
 
     Status run() override {
@@ -53,7 +54,8 @@ public:
 private:
     Json effects() const {
         Json items = Json::array();
-        for (const EffectPtr& effect : catalog_.load().effects()) {
+        const Catalog catalog = catalog_.load();
+        for (const EffectPtr& effect : catalog.effects()) {
             items.push_back({{"id", effect->id},
                              {"stage", effect->stage},
                              {"help", effect->help},

@@ -139,7 +139,9 @@ std::string cmake_directory() {
 class NewCommand : public Command {
 public:
     void declare(CLI::App& app) override {
-        app.add_option("NAME", name_, "The effect's id: small letters, digits and underscores")->required();
+        app.add_option("NAME", name_, "The effect's id: small letters, digits and underscores")
+            ->required()
+            ->type_name("");
         app.add_option("--dir", folder_, "The folder to make; ./NAME without it")->type_name("DIR");
         app.footer("The folder builds out of tree with CMake. Moved into plugins/ of the postfx sources, it "
                    "is built\n"

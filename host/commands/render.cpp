@@ -5,13 +5,12 @@
 #include "report_output.hpp"
 #include "scene_input.hpp"
 
-#include "scene/renderer.hpp"
-
 #include <gl/context.hpp>
 #include <gl/objects.hpp>
 #include <image/files.hpp>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <map>
@@ -20,8 +19,6 @@ namespace fs = std::filesystem;
 
 namespace postfx::host {
 namespace {
-
-constexpr std::array saveable = {"color", "depth", "normal", "emission", "ambient"};
 
 /// "name.png" -> "name_0007.png".
 fs::path numbered(const fs::path& file, int frame, int frames) {
@@ -101,7 +98,7 @@ private:
         for (const auto& [name, file] : saves_) {
             if (std::find(wanted.begin(), wanted.end(), name) == wanted.end()) wanted.push_back(name);
         }
-        const Textures textures = renderer.render(facts.width, facts.height, frame.time, wanted).textures;
+        const Textures textures = textures_of(renderer.render(facts.width, facts.height, frame.time, wanted));
         runner.run(textures, frame, Timing::off);
         write_picture(runner, frames_ == 1 ? fs::path(output_) : numbered(output_, index, frames_), false);
         for (const auto& [name, file] : saves_) {
@@ -135,11 +132,10 @@ private:
         for (const std::string& item : save_) {
             const std::size_t equals = item.find('=');
             const std::string name = item.substr(0, equals);
-            if (equals == item.npos || std::find(saveable.begin(), saveable.end(), name) == saveable.end()) {
-                throw Error(
-                    fmt::format("--save \"{}\" is not NAME=FILE with NAME one of color, depth, normal, "
-                                "emission, ambient{}",
-                                item, did_you_mean(name, {saveable.begin(), saveable.end()})));
+            const std::vector<std::string>& names = SceneRenderer::attachment_names();
+            if (equals == item.npos || std::find(names.begin(), names.end(), name) == names.end()) {
+                throw Error(fmt::format("--save \"{}\" is not NAME=FILE with NAME one of {}{}", item,
+                                        fmt::join(names, ", "), did_you_mean(name, names)));
             }
             saves_[name] = item.substr(equals + 1);
             check_writable_kind(saves_[name]);

@@ -157,12 +157,12 @@ Light read_light(const YamlValue& value) {
     Light light;
     if (kind == "directional") {
         light.kind = Light::Kind::directional;
-        keys.insert(keys.end(), {"shadow", "shadow_extent"});
+        keys.insert(keys.end(), {"shadow", "shadow_softness", "shadow_extent"});
     } else {
         light.kind = kind == "spot" ? Light::Kind::spot : Light::Kind::point;
         keys.push_back("attenuation");
         light.attenuation = {1, 0, 1};
-        if (kind == "spot") keys.insert(keys.end(), {"inner_angle", "outer_angle", "shadow"});
+        if (kind == "spot") keys.insert(keys.end(), {"inner_angle", "outer_angle", "shadow", "shadow_softness"});
     }
     const YamlMap map(entries.front().second, kind + " light", keys);
     float intensity = 1;
@@ -179,6 +179,7 @@ Light read_light(const YamlValue& value) {
         map.at("inner_angle").fail("the inner angle is larger than the outer one");
     }
     map.read("shadow", light.casts_shadow);
+    map.read("shadow_softness", light.shadow_softness, {0.5, 20});
     map.read("shadow_extent", light.shadow_extent, {0.1, 1e5});
     return light;
 }

@@ -59,7 +59,7 @@ struct SceneRenderer::State {
     State(Scene given, SceneRendererOptions given_options)
         : scene(std::move(given)), options(given_options), buffers(scene), shadows(scene),
           view_buffer(gl::make_buffer(sizeof(ViewBlock), nullptr)), empty_array(gl::make_vertex_array()),
-          sky_program(make_sky_program()) {
+          sky_program(make_sky_program()), depth_program(make_depth_program()) {
         if (options.samples != 1 && options.samples != 4) {
             throw Error(fmt::format("{} samples per pixel, expected 1 or 4", options.samples));
         }
@@ -69,7 +69,9 @@ struct SceneRenderer::State {
     ViewBlock make_view(const Camera& camera, glm::dvec2 shift, int width, int height);
     void add_lights(ViewBlock& view) const;
     void collect(const ViewBlock& view);
+    void draw_depth();
     void draw_list(const std::vector<Draw>& list);
+    void draw_one(const Draw& draw) const;
     void draw_sky();
     void mask_outputs(bool normal, bool others) const;
 
@@ -79,7 +81,7 @@ struct SceneRenderer::State {
     ShadowMaps shadows;
     gl::Buffer view_buffer;
     gl::VertexArray empty_array;
-    gl::Program sky_program;
+    gl::Program sky_program, depth_program;
     std::optional<SceneTargets> targets;
     gl::Program plain_program, textured_program;
 
@@ -96,10 +98,11 @@ void SceneRenderer::State::prepare(int width, int height, const std::vector<std:
     const bool same_outputs = targets && targets->outputs() == outputs;
     if (same_outputs && targets->width() == width && targets->height() == height) return;
     if (!same_outputs) {
-        plain_program = make_mesh_program(outputs, false);
+        const std::vector<LightCode> lights = shadows.light_codes(scene);
+        plain_program = make_mesh_program(outputs, false, lights);
         const bool any_textures = std::any_of(scene.materials.begin(), scene.materials.end(),
                                               [](const Material& material) { return material.textured(); });
-        if (any_textures) textured_program = make_mesh_program(outputs, true);
+        if (any_textures) textured_program = make_mesh_program(outputs, true, lights);
     }
     targets.emplace(width, height, outputs, options.samples);
     frame.attachments = {{"color", targets->output(0), Format::rgba16f},
@@ -141,16 +144,15 @@ ViewBlock SceneRenderer::State::make_view(const Camera& camera, glm::dvec2 shift
 
 void SceneRenderer::State::add_lights(ViewBlock& view) const {
     const std::size_t count = std::min(scene.lights.size(), max_lights);
-    view.backward.w = static_cast<float>(count);
-    for (std::size_t i = 0; i < count; ++i) {
+        for (std::size_t i = 0; i < count; ++i) {
         const Light& light = scene.lights[i];
         const glm::dmat4& place = nodes[light.node];
         const float outer = std::cos(glm::radians(light.outer_angle)),
                     inner = std::cos(glm::radians(light.inner_angle));
-        view.lights[i] = {glm::vec4(glm::vec3(place[3]), static_cast<float>(light.kind)),
+        view.lights[i] = {glm::vec4(glm::vec3(place[3]), 1),
                           glm::vec4(glm::normalize(glm::vec3(-place[2])), outer),
                           glm::vec4(light.color, 1 / std::max(inner - outer, 1e-4f)),
-                          glm::vec4(light.attenuation, -1)};
+                          glm::vec4(light.attenuation, 0)};
     }
     shadows.describe(view);
 }
@@ -173,21 +175,34 @@ void SceneRenderer::State::collect(const ViewBlock& view) {
               [](const Draw& a, const Draw& b) { return a.distance > b.distance; });
 }
 
+void SceneRenderer::State::draw_one(const Draw& draw) const {
+    const glm::mat4 to_world(nodes[draw.part->node]);
+    glUniformMatrix4fv(0, 1, GL_FALSE, glm::value_ptr(to_world));
+    glUniformMatrix3fv(1, 1, GL_FALSE, glm::value_ptr(glm::transpose(glm::inverse(glm::mat3(to_world)))));
+    glFrontFace(glm::determinant(glm::mat3(to_world)) < 0 ? GL_CW : GL_CCW);
+    (scene.materials[draw.part->material].two_sided ? glDisable : glEnable)(GL_CULL_FACE);
+    glDrawElementsBaseVertex(GL_TRIANGLES, draw.part->index_count, GL_UNSIGNED_INT,
+                             reinterpret_cast<const void*>(draw.part->first_index), draw.part->base_vertex);
+}
+
+/// Depth of everything opaque first: geometry costs little beside light, and so light is reckoned once per pixel.
+void SceneRenderer::State::draw_depth() {
+    glUseProgram(depth_program.name());
+    glBindVertexArray(buffers.vertex_array());
+    glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
+    for (const Draw& draw : opaque) {
+        if (scene.materials[draw.part->material].alpha_cutoff == 0) draw_one(draw);
+    }
+    glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+}
+
 void SceneRenderer::State::draw_list(const std::vector<Draw>& list) {
     glBindVertexArray(buffers.vertex_array());
     for (const Draw& draw : list) {
-        const Material& material = scene.materials[draw.part->material];
-        const glm::mat4 to_world(nodes[draw.part->node]);
-        const glm::mat3 normals = glm::transpose(glm::inverse(glm::mat3(to_world)));
-        glUseProgram((material.textured() ? textured_program : plain_program).name());
-        glUniformMatrix4fv(0, 1, GL_FALSE, glm::value_ptr(to_world));
-        glUniformMatrix3fv(1, 1, GL_FALSE, glm::value_ptr(normals));
+        const bool textured = scene.materials[draw.part->material].textured();
+        glUseProgram((textured ? textured_program : plain_program).name());
         buffers.bind_material(draw.part->material);
-        glFrontFace(glm::determinant(glm::mat3(to_world)) < 0 ? GL_CW : GL_CCW);
-        (material.two_sided ? glDisable : glEnable)(GL_CULL_FACE);
-        glDrawElementsBaseVertex(GL_TRIANGLES, draw.part->index_count, GL_UNSIGNED_INT,
-                                 reinterpret_cast<const void*>(draw.part->first_index),
-                                 draw.part->base_vertex);
+        draw_one(draw);
     }
     glDisable(GL_CULL_FACE);
     glFrontFace(GL_CCW);
@@ -248,6 +263,8 @@ SceneFrame SceneRenderer::render(int width, int height, double time, const std::
     s.collect(view);
 
     s.targets->begin();
+    s.draw_depth();
+    glDepthFunc(GL_GEQUAL);
     s.draw_list(s.opaque);
     s.draw_sky();
     if (!s.transparent.empty()) {

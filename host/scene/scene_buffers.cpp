@@ -2,6 +2,7 @@
 
 #include "view_block.hpp"
 
+#include <algorithm>
 #include <bit>
 #include <cstddef>
 #include <cstring>

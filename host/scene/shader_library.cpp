@@ -32,7 +32,7 @@ public:
     }
     ShaderText& made(const std::string& text) {
         text_ += fmt::format("#line 1 {}\n{}\n", files_.size(), text);
-        files_.push_back("generated outputs");
+        files_.push_back("(generated for this scene)");
         return *this;
     }
     const std::string& text() const { return text_; }
@@ -71,6 +71,28 @@ std::string mesh_outputs(const OutputNames& outputs) {
     return text + "}\n";
 }
 
+std::string light_calls(const std::vector<LightCode>& lights) {
+    std::string text = "vec3 scene_direct(Surface surface, vec3 to_eye) {\n    vec3 sum = vec3(0.0);\n";
+    for (std::size_t i = 0; i < lights.size(); ++i) {
+        text += fmt::format("    {{\n        SceneLight light = u_view.lights[{}];\n", i);
+        if (lights[i].kind == Light::Kind::directional) {
+            text += "        vec3 to_light = -light.direction.xyz;\n        float strength = 1.0;\n";
+        } else {
+            text += "        vec3 offset = light.position.xyz - v_position;\n"
+                    "        float distance = length(offset);\n"
+                    "        vec3 to_light = offset / max(distance, 1e-6);\n"
+                    "        float strength = scene_attenuation(light.attenuation.xyz, distance);\n";
+        }
+        if (lights[i].kind == Light::Kind::spot) text += "        strength *= scene_cone(light, to_light);\n";
+        if (lights[i].shadow_layer >= 0) {
+            text += fmt::format("        strength *= scene_shadow({}, surface.normal, to_light);\n",
+                                lights[i].shadow_layer);
+        }
+        text += "        sum += scene_reflect(light.color.rgb * strength, surface, to_light, to_eye);\n    }\n";
+    }
+    return text + "    return sum;\n}\n";
+}
+
 std::string resolve_main(const OutputNames& outputs, int samples) {
     std::string text = declare_outputs(outputs) + "layout(binding = 0) uniform sampler2DMS u_depth;\n";
     for (std::size_t i = 0; i < outputs.size(); ++i) {
@@ -105,16 +127,22 @@ gl::Program link(const ShaderText& vertex, const ShaderText& fragment, const std
 
 } // namespace
 
-gl::Program make_mesh_program(const OutputNames& outputs, bool textured) {
+gl::Program make_mesh_program(const OutputNames& outputs, bool textured, const std::vector<LightCode>& lights) {
     ShaderText fragment;
     fragment.file("view.glsl").file("material.glsl");
     fragment.file(textured ? "surface_textured.glsl" : "surface_plain.glsl");
-    fragment.file("lighting.glsl").made(mesh_outputs(outputs)).file("mesh.frag.glsl");
+    fragment.file("lighting.glsl").made(light_calls(lights)).file("shade.glsl");
+    fragment.made(mesh_outputs(outputs)).file("mesh.frag.glsl");
     return link(ShaderText().file("view.glsl").file("mesh.vert.glsl"), fragment, "scene mesh");
 }
 
+gl::Program make_depth_program() {
+    return link(ShaderText().file("view.glsl").file("mesh.vert.glsl"), ShaderText().file("depth_only.frag.glsl"),
+                "scene depth");
+}
+
 gl::Program make_shadow_program() {
-    return link(ShaderText().file("shadow.vert.glsl"), ShaderText().file("shadow.frag.glsl"), "scene shadow");
+    return link(ShaderText().file("shadow.vert.glsl"), ShaderText().file("depth_only.frag.glsl"), "scene shadow");
 }
 
 gl::Program make_sky_program() {

@@ -2,6 +2,8 @@
 // are wanted. [GL thread]
 #pragma once
 
+#include "scene.hpp"
+
 #include <gl/objects.hpp>
 
 #include <string>
@@ -13,7 +15,16 @@ namespace postfx::host {
 /// "ambient".
 using OutputNames = std::vector<std::string>;
 
-gl::Program make_mesh_program(const OutputNames& outputs, bool textured);
+/// What the shader has to know of a light beforehand; where it is and how bright changes by frame.
+struct LightCode {
+    Light::Kind kind;
+    int shadow_layer = -1; ///< -1: casts none
+};
+
+/// One call per light, rather than a loop over all kinds: software rasterizers run every branch of a loop's body.
+gl::Program make_mesh_program(const OutputNames& outputs, bool textured, const std::vector<LightCode>& lights);
+/// Only depth, at exactly the same depth as make_mesh_program.
+gl::Program make_depth_program();
 gl::Program make_shadow_program();
 gl::Program make_sky_program();
 /// Several samples per pixel to one: light is averaged, depth and normal come from the nearest sample.

@@ -1,7 +1,6 @@
 #include "shadow_maps.hpp"
 
 #include "projection.hpp"
-#include "shader_library.hpp"
 
 #include <glm/gtc/type_ptr.hpp>
 
@@ -45,7 +44,7 @@ ShadowMaps::ShadowMaps(const Scene& scene) {
     for (std::size_t i = 0; i < std::min(scene.lights.size(), max_lights); ++i) {
         const Light& light = scene.lights[i];
         if (light.casts_shadow && light.kind != Light::Kind::point && maps_.size() < max_shadows) {
-            maps_.push_back({i, {}, glm::mat4(1), 0});
+            maps_.push_back({i, {}, glm::mat4(1), 0, light.shadow_softness});
         }
     }
     GLuint name = 0;
@@ -104,9 +103,17 @@ void ShadowMaps::draw(const Scene& scene, const std::vector<glm::dmat4>& nodes, 
 void ShadowMaps::describe(ViewBlock& view) const {
     for (std::size_t layer = 0; layer < maps_.size(); ++layer) {
         view.world_to_shadow[layer] = maps_[layer].world_to_clip;
-        view.shadow_texel[layer].x = maps_[layer].texel;
-        view.lights[maps_[layer].light].attenuation.w = static_cast<float>(layer);
+        view.shadow_texel[layer] = {maps_[layer].texel, maps_[layer].softness, 0, 0};
     }
+}
+
+std::vector<LightCode> ShadowMaps::light_codes(const Scene& scene) const {
+    std::vector<LightCode> codes;
+    for (std::size_t i = 0; i < std::min(scene.lights.size(), max_lights); ++i)
+        codes.push_back({scene.lights[i].kind, -1});
+    for (std::size_t layer = 0; layer < maps_.size(); ++layer)
+        codes[maps_[layer].light].shadow_layer = static_cast<int>(layer);
+    return codes;
 }
 
 } // namespace postfx::host

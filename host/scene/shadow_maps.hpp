@@ -3,6 +3,7 @@
 
 #include "scene.hpp"
 #include "scene_buffers.hpp"
+#include "shader_library.hpp"
 #include "view_block.hpp"
 
 #include <gl/objects.hpp>
@@ -22,6 +23,8 @@ public:
               const SceneBuffers& buffers);
     /// Tell the shader where they are.
     void describe(ViewBlock& view) const;
+    /// Every light's kind and layer, in the scene's order.
+    std::vector<LightCode> light_codes(const Scene& scene) const;
     GLuint texture() const { return texture_.name(); }
 
 private:
@@ -29,7 +32,8 @@ private:
         std::size_t light;
         gl::Framebuffer framebuffer;
         glm::mat4 world_to_clip{1};
-        float texel = 0; ///< metres at clip w = 1
+        float texel = 0;    ///< metres at clip w = 1
+        float softness = 0; ///< texels
     };
     std::vector<Map> maps_;
     gl::Handle<gl::destroy_texture> texture_;

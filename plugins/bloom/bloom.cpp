@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <numeric>
 #include <string>
 
 namespace {
@@ -23,7 +24,7 @@ constexpr postfx::Parameter parameters[] = {
         .range(0, 0.5)
         .in_unit("height")
         .identity_at(0)
-        .about("How far the light spreads: standard deviation of the widest part of the glow"),
+        .about("How far the light spreads: standard deviation of the glow"),
     postfx::number("threshold", 1.0).range(0, 1000).about("Luminous pixels start here (threshold mode only)"),
     postfx::number("knee", 0.5).range(0, 1).about("Softness of the threshold, as a fraction of it"),
     postfx::color("tint", 1, 1, 1).range(0, 1).about("Colour that the glow is multiplied by"),
@@ -32,36 +33,62 @@ constexpr const char* attachments[] = {"emission"};
 
 /// Sizes go up to 2^16 pixels, so a pyramid has at most 16 levels.
 constexpr int max_levels = 16;
-/// The widest blur of L octaves has a standard deviation of about 1.1 * 2^L pixels (1.08 to 1.22, see
-/// README.md).
-constexpr double octave_deviation = 1.1;
-/// The energy of a level relative to the next wider one: the glow falls like r^-1.5 inside its radius.
+/// Energy of a level relative to the next wider one, 2^-1/2: the glow falls like r^-1.5 inside its radius.
 constexpr double narrower_share = 0.70710678118654752;
 
-/// The kernel as a sum of blurs, one per pyramid level.
-struct Pyramid {
-    int levels;                           ///< 1 is half resolution
-    double fade;                          ///< below one octave the glow fades out instead of narrowing
-    std::array<double, max_levels> share; ///< part of levels l and wider that comes from wider ones
+/// Weight of each level's blur, widest last; continuous in `octaves`: the deepest level comes in from 0.
+struct Weights {
+    int levels;
+    std::array<double, max_levels> level;
+
+    explicit Weights(double octaves) : levels(std::max(1, static_cast<int>(std::ceil(octaves)))), level{} {
+        level[levels - 1] = 1 + octaves - levels;
+        double weight = std::pow(narrower_share, octaves - (levels - 1));
+        for (int i = levels - 2; i >= 0; --i, weight *= narrower_share)
+            level[i] = weight;
+    }
+    double sum() const { return std::accumulate(level.begin(), level.begin() + levels, 0.0); }
 };
 
-/// Continuous in radius: the deepest level comes in with a weight that grows from 0.
-Pyramid make_pyramid(double radius_pixels, int longer_side) {
-    const double most = std::max(1.0, std::ceil(std::log2(longer_side)));
-    const double octaves =
-        std::min({std::log2(1 + radius_pixels / octave_deviation), most, static_cast<double>(max_levels)});
-    Pyramid pyramid{std::max(1, static_cast<int>(std::ceil(octaves))), std::min(octaves, 1.0), {}};
-    double wider = 0;
-    for (int level = pyramid.levels; level >= 1; --level) {
-        const double narrower_by = octaves - level;
-        const double weight = narrower_by < 0 ? 1 + narrower_by : std::pow(narrower_share, narrower_by);
-        pyramid.share[level - 1] = wider / (wider + weight);
-        wider += weight;
-    }
-    return pyramid;
+/// Below one octave the glow fades out instead of narrowing.
+double fade(double octaves) {
+    return std::min(octaves, 1.0);
 }
 
-postfx::PlanImage pass_down_and_up(const postfx::Request& in, postfx::Builder& out, const Pyramid& pyramid) {
+/// Variances on each axis of the kernels of the passes, in squared texels of the finer of the two levels they
+/// join.
+constexpr double variance_down = 1.75, variance_first_down = 0.75;
+constexpr double variance_tent = 2.75, variance_bilinear = 0.75;
+/// Levels from this one on (0 is half resolution) are brought up to by the tent, finer ones by linear
+/// interpolation.
+constexpr int first_tent = 1;
+
+/// Of the whole kernel on each axis [px^2]: variances of passes that follow each other add up.
+double variance(double octaves) {
+    const Weights weights(octaves);
+    double level_variance = variance_first_down + variance_bilinear;
+    double sum = 0;
+    double texel_area = 4;
+    for (int i = 0; i < weights.levels; ++i, texel_area *= 4) {
+        sum += weights.level[i] * level_variance;
+        level_variance += texel_area * (variance_down + (i < first_tent ? variance_bilinear : variance_tent));
+    }
+    return fade(octaves) * sum / weights.sum();
+}
+
+/// Depth of the pyramid whose kernel has this standard deviation, or as much as the picture allows.
+double octaves_for(double deviation_pixels, int longer_side) {
+    double low = 0;
+    double high = std::clamp(std::ceil(std::log2(longer_side)), 1.0, static_cast<double>(max_levels));
+    if (variance(high) <= deviation_pixels * deviation_pixels) return high;
+    for (int i = 0; i < 40; ++i) { // to 16 * 2^-40 of an octave
+        const double middle = (low + high) / 2;
+        (variance(middle) < deviation_pixels * deviation_pixels ? low : high) = middle;
+    }
+    return high;
+}
+
+postfx::PlanImage pass_down_and_up(const postfx::Request& in, postfx::Builder& out, const Weights& weights) {
     const Mode mode = static_cast<Mode>(in.choice("mode"));
     const double start = in.number("threshold");
     const double half_width = start * in.number("knee");
@@ -72,18 +99,22 @@ postfx::PlanImage pass_down_and_up(const postfx::Request& in, postfx::Builder& o
                    .value("knee_end", start + half_width)
                    .constant("BLOOM_HAS_THRESHOLD", mode == threshold ? 1 : 0)
                    .scale(0.5);
-    for (int i = 1; i < pyramid.levels; ++i) {
+    for (int i = 1; i < weights.levels; ++i) {
         level[i] = out.pass(("down_" + std::to_string(i + 1)).c_str(), "bloom_down.glsl")
                        .reads("finer", level[i - 1], "nearest")
                        .scale_of(level[i - 1], 0.5);
     }
-    postfx::PlanImage glow = level[pyramid.levels - 1];
-    for (int i = pyramid.levels - 2; i >= 0; --i) {
+    postfx::PlanImage glow = level[weights.levels - 1];
+    double wider = weights.level[weights.levels - 1];
+    for (int i = weights.levels - 2; i >= 0; --i) {
+        const double all = wider + weights.level[i];
         glow = out.pass(("up_" + std::to_string(i + 1)).c_str(), "bloom_up.glsl")
                    .reads("own", level[i], "nearest")
                    .reads("wider", glow, "nearest")
-                   .value("wider_share", pyramid.share[i])
+                   .value("wider_share", wider / all)
+                   .constant("BLOOM_UP_IS_TENT", i < first_tent ? 0 : 1)
                    .scale_of(level[i], 1.0);
+        wider = all;
     }
     return glow;
 }
@@ -95,13 +126,12 @@ void plan(const postfx::Request& in, postfx::Builder& out) {
     if (mode == emission && !in.has("emission")) {
         return out.not_called_for("exact", "there is no emission attachment, so nothing glows");
     }
-    const Pyramid pyramid =
-        make_pyramid(in.number("radius") * in.height(), std::max(in.width(), in.height()));
-    const double strength = in.number("intensity") * pyramid.fade;
+    const double octaves = octaves_for(in.number("radius") * in.height(), std::max(in.width(), in.height()));
+    const double strength = in.number("intensity") * fade(octaves);
     const double* tint = in.color("tint");
     // What is added may not lift a half float over its largest value; a weighted mean can't.
     const double ceiling = mode == scatter ? 3.4e38 : 65504;
-    const postfx::PlanImage glow = pass_down_and_up(in, out, pyramid);
+    const postfx::PlanImage glow = pass_down_and_up(in, out, Weights(octaves));
     out.compose("bloom.glsl")
         .reads("glow", glow, "nearest")
         .value("kept", mode == scatter ? 1 - strength : 1)

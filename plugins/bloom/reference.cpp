@@ -129,9 +129,7 @@ Image64 scattering_light(const ReferenceInput& input) {
 }
 
 /// Weight of each level's blur, finest first, summing to min(octaves, 1).
-Line level_weights(double radius_pixels, int longer_side) {
-    const double most = std::max(1.0, std::ceil(std::log2(longer_side)));
-    const double octaves = std::min(std::log2(1 + radius_pixels / 1.1), most);
+Line level_weights(double octaves) {
     Line weights;
     double sum = 0;
     for (int level = 1; level < octaves + 1; ++level) {
@@ -144,12 +142,36 @@ Line level_weights(double radius_pixels, int longer_side) {
     return weights;
 }
 
+/// Of a level's whole way down and up, in pixels of the picture.
+double level_variance(std::size_t level) {
+    constexpr double smooth = 3 * 0.25, pair = 1, linear = 0.75, tent = 2; // of the factors of the kernels
+    double variance = smooth + linear;
+    for (std::size_t finer = 1; finer < level; ++finer)
+        variance += std::pow(4, finer) * (smooth + pair + linear + (finer == 1 ? 0 : tent));
+    return variance;
+}
+
+/// The weights whose kernel has this standard deviation; the widest that fit if there is none.
+Line weights_for(double deviation, int longer_side) {
+    double low = 0, high = std::max(1.0, std::ceil(std::log2(longer_side)));
+    const double widest = high;
+    for (int step = 0; step < 60; ++step) {
+        const double middle = (low + high) / 2;
+        const Line weights = level_weights(middle);
+        double variance = 0;
+        for (std::size_t i = 0; i < weights.size(); ++i)
+            variance += weights[i] * level_variance(i + 1);
+        (variance < deviation * deviation ? low : high) = middle;
+    }
+    return level_weights(std::min(high, widest));
+}
+
 } // namespace
 
 Image64 postfx::testing::reference(const ReferenceInput& input) {
     const int width = input.color.width;
     const int height = input.color.height;
-    const Line weights = level_weights(input.value("radius") * height, std::max(width, height));
+    const Line weights = weights_for(input.value("radius") * height, std::max(width, height));
     const Line twice_averaged = {0.5, 0.5};
     const Line smooth = multiply(twice_averaged, multiply(twice_averaged, twice_averaged));
     std::vector<Image64> levels = {half_size(scattering_light(input), smooth)};
@@ -159,7 +181,7 @@ Image64 postfx::testing::reference(const ReferenceInput& input) {
     Image64 sum(levels.back().width, levels.back().height, 3);
     for (std::size_t level = levels.size(); level-- > 0;) {
         if (sum.width != levels[level].width || sum.height != levels[level].height) {
-            sum = resized(sum, levels[level].width, levels[level].height, true);
+            sum = resized(sum, levels[level].width, levels[level].height, level > 0);
         }
         for (std::size_t i = 0; i < sum.values.size(); ++i)
             sum.values[i] += weights[level] * levels[level].values[i];
@@ -176,7 +198,10 @@ Image64 postfx::testing::reference(const ReferenceInput& input) {
         for (int x = 0; x < width; ++x) {
             for (int c = 0; c < 3; ++c) {
                 const double tint = input.value("tint." + std::to_string(c));
-                result.at(x, y, c) = kept * input.color.at(x, y, c) + intensity * tint * glow.at(x, y, c);
+                const double own = input.color.at(x, y, c);
+                double added = intensity * tint * glow.at(x, y, c);
+                if (input.value("mode") != 0) added = std::min(added, std::max(0.0, 65504 - own));
+                result.at(x, y, c) = kept * own + added;
             }
         }
     }

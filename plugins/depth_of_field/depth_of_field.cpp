@@ -41,7 +41,8 @@ constexpr const char* attachments[] = {"depth"};
 
 /// Circles up to this diameter [px] count as sharp and stay untouched.
 constexpr double sharp_diameter = 1;
-/// Radius of the largest gather, in texels of the reduced layers: the quality knob. 6 is at most 137 taps.
+/// Radius of the largest gather, in texels of the reduced layers; 6 is at most 137 taps. More means finer
+/// layers for the same circle.
 constexpr double largest_radius = 6;
 /// Edge of a tile, texels. A tile and its eight neighbours must hold everything that reaches a texel of the
 /// tile or one beside it: largest_radius + half a texel of edge + 1.
@@ -110,12 +111,13 @@ void declare_passes(const postfx::Request& in, postfx::Builder& out, const Lens&
     const postfx::PlanImage foreground_shape = background.output(2);
     const postfx::PlanImage tiles = out.pass("tiles", "depth_of_field_tiles.glsl")
                                         .reads("shape", foreground_shape, "nearest")
+                                        .reads("background", background, "nearest")
                                         .constant("DEPTH_OF_FIELD_TILE", tile_size)
-                                        .format("r32f")
+                                        .format("rg32f")
                                         .sized(size.tiles_x, size.tiles_y);
     const postfx::PlanImage reach = out.pass("reach", "depth_of_field_reach.glsl")
                                         .reads("tiles", tiles, "nearest")
-                                        .format("r32f")
+                                        .format("rg32f")
                                         .sized(size.tiles_x, size.tiles_y);
     const postfx::PlanImage blurred_background = out.pass("background", "depth_of_field_background.glsl")
                                                      .reads("layer", background, "nearest")

@@ -7,7 +7,9 @@ vec4 depth_of_field_background(Pixel pixel, DepthOfFieldBackgroundParams params,
     vec4 own = texelFetch(layer, pixel.index, 0);
     if (own.a == 0.0) return own;
     bool hidden = own.a < 0.0; // behind foreground that may turn transparent: filled from all that is visible nearby
-    float radius = hidden ? texelFetch(reach, pixel.index / DEPTH_OF_FIELD_TILE, 0).r : own.a;
+    vec2 around = texelFetch(reach, pixel.index / DEPTH_OF_FIELD_TILE, 0).rg;
+    if (hidden && around.g == 0.0) return own;
+    float radius = hidden ? around.r : own.a;
     ivec2 last = textureSize(layer, 0) - 1;
     float outer = radius + 0.5;
     int rows = int(outer);

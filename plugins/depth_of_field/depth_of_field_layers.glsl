@@ -3,7 +3,7 @@
 
 // Splits a block of pixels into what lies behind the focus plane and what lies before it, so that no later sum can mix
 // a sharp or near surface into the blur behind it.
-//   background  colour, blur radius [texels]: 0 in focus, -1 where the block shows nothing but foreground
+//   background  colour, blur radius [texels]: 0 in focus, -1 where the block shows nothing but blurred foreground
 //   foreground  colour, 1 (0 where there is none)
 //   shape       of the foreground: blur radius [texels], share of the block that it covers
 void depth_of_field_layers(Pixel pixel, DepthOfFieldLayersParams params, sampler2D source, sampler2D depth,
@@ -17,12 +17,11 @@ void depth_of_field_layers(Pixel pixel, DepthOfFieldLayersParams params, sampler
             vec4 light = vec4(depth_of_field_light(texelFetch(source, at, 0).rgb), 1.0);
             float circle = depth_of_field_circle(texelFetch(depth, at, 0).r, params.lens);
             float share = clamp((abs(circle) - params.sharp_diameter) * params.softening, 0.0, 1.0);
-            if (share == 0.0) {
-                sharp_sum += light;
-            } else if (circle > 0.0) {
+            if (share > 0.0 && circle > 0.0) {
                 far_sum += share * light;
                 far_circle += share * circle;
             } else {
+                sharp_sum += (1.0 - share) * light; // the sharp part of a near surface is background to nearer ones
                 near_sum += share * light;
                 near_circle -= share * circle;
             }

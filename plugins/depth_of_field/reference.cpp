@@ -144,7 +144,7 @@ private:
             const double c = circle(x, y);
             const double part = blurred_part(c);
             const Color light = color_at(input_.color, x, y);
-            if (part == 0) sharp_mean.add(light, 1);
+            if (part == 0 || c < 0) sharp_mean.add(light, 1 - part);
             if (part > 0 && c > 0) far_mean.add(light, part), far_circle += part * c;
             if (part > 0 && c < 0) near_mean.add(light, part), near_circle -= part * c;
         }

@@ -1,5 +1,8 @@
-#include <gl_main.hpp>
+#include <testing.hpp>
 
+#include <catch2/catch.hpp>
+
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <limits>

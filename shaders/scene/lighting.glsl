@@ -4,28 +4,25 @@
 
 layout(binding = 4) uniform sampler2DArrayShadow u_shadows;
 
-struct Radiance {
-    vec3 direct;
-    vec3 ambient; // the share that occlusion may darken
-};
-
-// 1 in light, 0 in shadow: 3x3 bilinear comparisons. Outside of the map everything is lit.
-float scene_shadow(int layer, vec3 position, vec3 normal, vec3 to_light) {
-    // Moved off the surface by a texel or two, more so at grazing light, against its shadowing itself.
-    float texel_width = u_view.shadow_texel[layer].x * (u_view.world_to_shadow[layer] * vec4(position, 1.0)).w;
-    vec3 lifted = position + normal * texel_width * (2.5 - 2.0 * dot(normal, to_light));
-    vec4 clip = u_view.world_to_shadow[layer] * vec4(lifted, 1.0);
+// 1 in light, 0 in shadow: four bilinear comparisons, together a smooth filter. Outside of the map everything is lit.
+float scene_shadow(int layer, vec3 normal, vec3 to_light) {
+    // Moved off the surface against its shadowing itself: a plane at angle t to the light rises by the filter's half
+    // width times sin(t), and the filter is half as wide again across its diagonal.
+    float cosine = clamp(dot(normal, to_light), 0.0, 1.0);
+    float softness = u_view.shadow_texel[layer].y;
+    mat4 world_to_shadow = u_view.world_to_shadow[layer];
+    float texel_width = u_view.shadow_texel[layer].x * (world_to_shadow * vec4(v_position, 1.0)).w;
+    vec3 lifted = v_position + normal * texel_width * (0.3 + 1.5 * (softness + 1.0) * sqrt(1.0 - cosine * cosine));
+    vec4 clip = world_to_shadow * vec4(lifted, 1.0);
     vec3 place = clip.xyz / clip.w;
     place.xy = place.xy * 0.5 + 0.5;
-    if (clip.w <= 0.0 || any(greaterThan(abs(place.xy - 0.5), vec2(0.5)))) return 1.0;
-    float lit = 0.0;
-    vec2 texel = 1.0 / vec2(textureSize(u_shadows, 0).xy);
-    for (int y = -1; y <= 1; ++y) {
-        for (int x = -1; x <= 1; ++x) {
-            lit += texture(u_shadows, vec4(place.xy + texel * vec2(x, y), float(layer), place.z));
-        }
-    }
-    return lit / 9.0;
+    float texel = softness / float(textureSize(u_shadows, 0).x);
+    float lit = 0.25 * (texture(u_shadows, vec4(place.xy + vec2(-texel, -texel), float(layer), place.z))
+                        + texture(u_shadows, vec4(place.xy + vec2(texel, -texel), float(layer), place.z))
+                        + texture(u_shadows, vec4(place.xy + vec2(-texel, texel), float(layer), place.z))
+                        + texture(u_shadows, vec4(place.xy + vec2(texel, texel), float(layer), place.z)));
+    bool beyond = clip.w <= 0.0 || any(greaterThan(abs(place.xy - 0.5), vec2(0.5)));
+    return beyond ? 1.0 : lit;
 }
 
 vec3 scene_fresnel(vec3 head_on, float cosine) {
@@ -34,41 +31,20 @@ vec3 scene_fresnel(vec3 head_on, float cosine) {
     return head_on + (1.0 - head_on) * (x2 * x2 * x);
 }
 
-vec3 scene_light(SceneLight light, Surface surface, vec3 to_eye) {
-    vec3 to_light = -light.direction.xyz;
-    float strength = 1.0;
-    if (int(light.position.w) != SCENE_DIRECTIONAL) {
-        vec3 offset = light.position.xyz - v_position;
-        float distance = length(offset);
-        to_light = offset / max(distance, 1e-6);
-        strength = 1.0 / max(dot(light.attenuation.xyz, vec3(1.0, distance, distance * distance)), 1e-4);
-    }
-    if (int(light.position.w) == SCENE_SPOT) {
-        float edge = clamp((dot(-to_light, light.direction.xyz) - light.direction.w) * light.color.w, 0.0, 1.0);
-        strength *= edge * edge * (3.0 - 2.0 * edge);
-    }
-    float cosine = dot(surface.normal, to_light);
-    if (cosine <= 0.0 || strength <= 0.0) return vec3(0.0);
-    if (light.attenuation.w >= 0.0) {
-        strength *= scene_shadow(int(light.attenuation.w), v_position, surface.normal, to_light);
-    }
+// Light of that colour from a unit direction.
+vec3 scene_reflect(vec3 color, Surface surface, vec3 to_light, vec3 to_eye) {
     vec3 halfway = normalize(to_light + to_eye);
     float lobe = pow(max(dot(surface.normal, halfway), 0.0), surface.shininess) * (surface.shininess + 8.0) / 8.0;
     vec3 reflected = scene_fresnel(surface.specular, dot(halfway, to_eye)) * lobe;
-    return light.color.rgb * (strength * cosine) * (surface.diffuse * (1.0 - surface.specular) + reflected);
+    return color * max(dot(surface.normal, to_light), 0.0) * (surface.diffuse * (1.0 - surface.specular) + reflected);
 }
 
-Radiance scene_shade(Surface surface) {
-    vec3 to_eye = mix(u_view.backward.xyz, normalize(u_view.eye.xyz - v_position), u_view.eye.w);
-    vec3 direct = vec3(0.0);
-    int count = int(u_view.backward.w);
-    for (int i = 0; i < count; ++i) direct += scene_light(u_view.lights[i], surface, to_eye);
+float scene_attenuation(vec3 factors, float distance) {
+    return 1.0 / max(dot(factors, vec3(1.0, distance, distance * distance)), 1e-4);
+}
 
-    vec3 around = mix(u_view.ambient_down.rgb, u_view.ambient_up.rgb, surface.normal.y * 0.5 + 0.5);
-    // The background in the mirror direction; a dull surface sees little of it.
-    float gloss = surface.shininess / (surface.shininess + 60.0);
-    vec3 mirrored = scene_background(reflect(-to_eye, surface.normal)) * gloss;
-    vec3 fresnel = scene_fresnel(surface.specular, dot(surface.normal, to_eye));
-    vec3 ambient = around * surface.diffuse * (1.0 - surface.specular) + mirrored * fresnel;
-    return Radiance(direct, ambient);
+// 1 inside of the inner angle, 0 outside of the outer one.
+float scene_cone(SceneLight light, vec3 to_light) {
+    float edge = clamp((dot(-to_light, light.direction.xyz) - light.direction.w) * light.color.w, 0.0, 1.0);
+    return edge * edge * (3.0 - 2.0 * edge);
 }

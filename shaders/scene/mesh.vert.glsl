@@ -8,6 +8,9 @@ layout(location = 3) in vec3 a_tint;
 layout(location = 0) uniform mat4 u_object_to_world;
 layout(location = 1) uniform mat3 u_normal_to_world;
 
+// Depth alone is drawn first by another program, and has to come out the same to the last bit.
+invariant gl_Position;
+
 out vec3 v_position; // world, metres
 out vec3 v_normal;   // world, not unit
 out vec2 v_uv;

@@ -1,14 +1,10 @@
 // What is the same for a whole frame. Mirrored by view_block.hpp.
 
-const int SCENE_DIRECTIONAL = 0;
-const int SCENE_POINT = 1;
-const int SCENE_SPOT = 2;
-
 struct SceneLight {
-    vec4 position;    // xyz: world, metres; w: kind
+    vec4 position;    // xyz: world, metres
     vec4 direction;   // xyz: unit, where it shines; w: cosine of the outer angle
     vec4 color;       // rgb; w: 1 / (cosine of the inner angle - cosine of the outer angle)
-    vec4 attenuation; // x, y, z of 1 / (x + y L + z L^2); w: layer of its shadow map, -1 for none
+    vec4 attenuation; // x, y, z of 1 / (x + y L + z L^2)
 };
 
 layout(std140, binding = 0) uniform SceneView {
@@ -16,7 +12,7 @@ layout(std140, binding = 0) uniform SceneView {
     mat4 world_to_view;
     mat4 clip_to_direction; // (x, y, 1, 0) of the picture, -1..1, to a world direction, not unit
     vec4 eye;         // xyz: world; w: 1 for a perspective camera, 0 for a parallel one
-    vec4 backward;    // xyz: unit, against the view direction; w: number of lights
+    vec4 backward;    // xyz: unit, against the view direction
     vec4 zenith;      // rgb; w: radiance of the brightest stars
     vec4 horizon;     // rgb; w: share of the disc's halo
     vec4 ground;      // rgb; w: cosine of the disc's angular radius
@@ -24,7 +20,7 @@ layout(std140, binding = 0) uniform SceneView {
     vec4 disc;        // xyz: unit, towards the sun or moon; w: 1 if there is one
     vec4 ambient_up;
     vec4 ambient_down;
-    vec4 shadow_texel[SCENE_MAX_SHADOWS]; // x: width of a texel at clip w 1, metres
+    vec4 shadow_texel[SCENE_MAX_SHADOWS]; // x: width of a texel at clip w 1, metres; y: softness, texels
     mat4 world_to_shadow[SCENE_MAX_SHADOWS];
     SceneLight lights[SCENE_MAX_LIGHTS];
 } u_view;

@@ -1,5 +1,7 @@
 // my_effect against its reference, at its identity, and on pixels that should not be there.
-#include <gl_main.hpp>
+#include <testing.hpp>
+
+#include <catch2/catch.hpp>
 
 #include <cmath>
 #include <limits>

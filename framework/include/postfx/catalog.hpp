@@ -82,8 +82,10 @@ public:
     /// note.
     static Catalog discover(const std::vector<std::filesystem::path>& first = {});
 
-    /// Open one module and add its effects. Throws Error when it is not a plugin, has another major version
-    /// or declares something wrong; the message names file, effect and field.
+    /// Open one module and add its effects. Throws Error when it is not a plugin or has another major
+    /// version. An effect that declares something wrong is refused with an Error that names file, effect and
+    /// field; the module's other effects are added all the same (if several are wrong, the first is thrown,
+    /// the others are notes).
     void load(const std::filesystem::path& module);
     /// Check a module's declarations and add its effects, without opening anything. `origin` is for messages.
     void add(const postfx_module& module, const std::filesystem::path& origin);
@@ -97,6 +99,7 @@ public:
 
 private:
     void scan(const std::filesystem::path& directory);
+    void add(EffectPtr effect);
 
     std::vector<EffectPtr> effects_;
     std::vector<std::string> notes_;

@@ -18,11 +18,11 @@ struct Place {
     std::string effect{};
     std::string pass{};
 
-    /// "chain.yaml:14:9", "bloom/downsample", "picture.exr" or "".
+    /// "chain.yaml:14:9", "glow/downsample", "picture.exr" or "".
     std::string text() const;
 };
 
-/// What went wrong, where, in one line: "chain.yaml:14:9: bloom has no parameter "intensty"; did you mean
+/// What went wrong, where, in one line: "chain.yaml:14:9: glow has no parameter "intensty"; did you mean
 /// ...". `what()` is that whole line.
 class Error : public std::runtime_error {
 public:

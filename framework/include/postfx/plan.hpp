@@ -60,7 +60,7 @@ struct PassInput {
 };
 
 struct Pass {
-    std::string name;                 ///< "bloom/down", "chromatic_aberration+vignette+output"
+    std::string name;                 ///< "glow/down", "shade+tint+output"
     std::vector<std::string> effects; ///< chain entry names whose code is in it
     std::shared_ptr<const ProgramSource> program;
     std::vector<PassInput> inputs; ///< texture unit = index

@@ -59,7 +59,7 @@ typedef struct postfx_level {
 typedef struct postfx_source {
     uint32_t struct_size;
     uint32_t reserved;
-    const char* name; /* "bloom_down.glsl" */
+    const char* name; /* "glow_down.glsl" */
     const char* text;
     const char* path;
 } postfx_source;

@@ -185,12 +185,12 @@ struct PlanImage {
     PlanImage output(std::uint32_t n) const { return {handle + n}; }
 };
 
-/// One declared pass. It is handed to the host when it is converted to a PlanImage or goes out of scope,
-/// whichever comes first; so write it as one expression.
-class Pass {
+/// One pass as it is declared (plan.hpp has the host's Pass). It is handed to the host when it is converted
+/// to a PlanImage or goes out of scope, whichever comes first; so write it as one expression.
+class PassDeclaration {
 public:
-    Pass(const postfx_builder& builder, const char* kind, const char* name, const char* source,
-         std::uint32_t width, std::uint32_t height)
+    PassDeclaration(const postfx_builder& builder, const char* kind, const char* name, const char* source,
+                    std::uint32_t width, std::uint32_t height)
         : builder_(builder) {
         pass_.struct_size = sizeof(postfx_pass);
         pass_.kind = kind;
@@ -200,57 +200,59 @@ public:
         pass_.height = height;
         pass_.output_count = 1;
     }
-    Pass(const Pass&) = delete;
-    Pass& operator=(const Pass&) = delete;
-    ~Pass() { commit(); }
+    PassDeclaration(const PassDeclaration&) = delete;
+    PassDeclaration& operator=(const PassDeclaration&) = delete;
+    ~PassDeclaration() { commit(); }
 
     /// Bind `image` to the function's next sampler argument. filter: "nearest" or "linear"; edges are
     /// clamped.
-    Pass& reads(const char* name, PlanImage image, const char* filter = "linear") {
+    PassDeclaration& reads(const char* name, PlanImage image, const char* filter = "linear") {
         if (pass_.input_count == max_inputs) return overflow("inputs");
         inputs_[pass_.input_count++] = {sizeof(postfx_input), image.handle, name, filter};
         return *this;
     }
     /// A number computed here: member `name` of the pass's parameter struct.
-    Pass& value(const char* name, double x) {
+    PassDeclaration& value(const char* name, double x) {
         return add_number(values_, pass_.value_count, name, "float", {x});
     }
-    Pass& value(const char* name, double x, double y) {
+    PassDeclaration& value(const char* name, double x, double y) {
         return add_number(values_, pass_.value_count, name, "float", {x, y});
     }
-    Pass& value(const char* name, double x, double y, double z) {
+    PassDeclaration& value(const char* name, double x, double y, double z) {
         return add_number(values_, pass_.value_count, name, "float", {x, y, z});
     }
-    Pass& value(const char* name, double x, double y, double z, double w) {
+    PassDeclaration& value(const char* name, double x, double y, double z, double w) {
         return add_number(values_, pass_.value_count, name, "float", {x, y, z, w});
     }
-    Pass& int_value(const char* name, int x) {
+    PassDeclaration& int_value(const char* name, int x) {
         return add_number(values_, pass_.value_count, name, "int", {double(x)});
     }
     /// A number compiled in: GLSL `const int NAME` / `const float NAME`. Write NAME in capitals, with the
     /// effect's prefix.
-    Pass& constant(const char* name, int x) {
+    PassDeclaration& constant(const char* name, int x) {
         return add_number(constants_, pass_.constant_count, name, "int", {double(x)});
     }
-    Pass& constant(const char* name, double x) {
+    PassDeclaration& constant(const char* name, double x) {
         return add_number(constants_, pass_.constant_count, name, "float", {x});
     }
     /// Size relative to the picture, rounded up, at least 1x1.
-    Pass& scale(double factor) { return sized(scaled(pass_.width, factor), scaled(pass_.height, factor)); }
+    PassDeclaration& scale(double factor) {
+        return sized(scaled(pass_.width, factor), scaled(pass_.height, factor));
+    }
     /// Size relative to another image of this plan, rounded up, at least 1x1.
-    Pass& scale_of(PlanImage image, double factor) {
+    PassDeclaration& scale_of(PlanImage image, double factor) {
         std::uint32_t width = 1, height = 1;
         builder_.size(builder_.context, image.handle, &width, &height);
         return sized(scaled(width, factor), scaled(height, factor));
     }
-    Pass& sized(std::uint32_t width, std::uint32_t height) {
+    PassDeclaration& sized(std::uint32_t width, std::uint32_t height) {
         pass_.width = width;
         pass_.height = height;
         return *this;
     }
     /// One format word per output: "r8" "rg8" "rgba8" "r16f" "rg16f" "rgba16f" "r32f" "rg32f" "rgba32f"
     /// "r11g11b10f", or "" for the chain's working format (the default, one output).
-    Pass& formats(std::initializer_list<const char*> words) {
+    PassDeclaration& formats(std::initializer_list<const char*> words) {
         pass_.output_count = 0;
         for (const char* word : words) {
             if (pass_.output_count == max_outputs) return overflow("outputs");
@@ -258,7 +260,7 @@ public:
         }
         return *this;
     }
-    Pass& format(const char* word) { return formats({word}); }
+    PassDeclaration& format(const char* word) { return formats({word}); }
 
     operator PlanImage() { return {commit()}; }
 
@@ -268,12 +270,12 @@ private:
     static std::uint32_t scaled(std::uint32_t size, double factor) {
         return static_cast<std::uint32_t>(std::fmax(1.0, std::ceil(size * factor)));
     }
-    Pass& overflow(const char* what) {
+    PassDeclaration& overflow(const char* what) {
         builder_.refuse(builder_.context, (std::string(pass_.name) + " declares too many " + what).c_str());
         return *this;
     }
-    Pass& add_number(postfx_number* list, std::uint32_t& count, const char* name, const char* kind,
-                     std::initializer_list<double> components) {
+    PassDeclaration& add_number(postfx_number* list, std::uint32_t& count, const char* name, const char* kind,
+                                std::initializer_list<double> components) {
         if (count == max_numbers) return overflow("numbers");
         postfx_number& added = list[count++];
         added = {sizeof(postfx_number), static_cast<std::uint32_t>(components.size()), name, kind, {}};
@@ -329,12 +331,12 @@ public:
     /// "depth", "normal", "emission", "ambient"; empty when the host has none.
     PlanImage attachment(const char* name) { return {builder_.attachment(builder_.context, name)}; }
 
-    Pass pass(const char* name, const char* source) {
+    PassDeclaration pass(const char* name, const char* source) {
         return {builder_, "fragment", name, source, request_.width, request_.height};
     }
     /// The effect's function of its own pixel; exactly one, declared last. If it reads color() as well, it
     /// samples the stored picture at displaced points and can only stand first in a fused pass.
-    Pass compose(const char* source) {
+    PassDeclaration compose(const char* source) {
         return {builder_, "compose", "compose", source, request_.width, request_.height};
     }
 

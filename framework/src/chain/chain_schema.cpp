@@ -116,7 +116,7 @@ Json override_schema(const Catalog& catalog) {
     for (const EffectPtr& effect : catalog.effects())
         any.push_back({{"$ref", "#/$defs/" + effect->id}});
     if (any.empty()) return false;
-    return {{"anyOf", any}, {"not", {{"required", {"name"}}}}};
+    return {{"anyOf", any}, {"not", {{"type", "object"}, {"required", {"name"}}}}};
 }
 
 } // namespace

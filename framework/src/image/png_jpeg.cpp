@@ -12,7 +12,6 @@
 #define STBI_ONLY_PNG
 #define STBI_ONLY_JPEG
 #define STBI_NO_STDIO
-#define STBI_MAX_DIMENSIONS 32768
 #include <stb_image.h>
 
 #define STB_IMAGE_WRITE_STATIC
@@ -23,7 +22,16 @@
 namespace postfx::formats {
 namespace {
 
-static_assert(STBI_MAX_DIMENSIONS == max_side);
+/// The size in a PNG's first chunk; stb_image calls a file with an absurd one no image at all.
+void check_png_size(const Path& file, std::string_view bytes) {
+    const auto number_at = [&](std::size_t at) {
+        long long number = 0;
+        for (std::size_t i = at; i < at + 4; ++i)
+            number = number << 8 | static_cast<std::uint8_t>(bytes[i]);
+        return number;
+    };
+    if (bytes.size() >= 24) check_size(file, number_at(16), number_at(20));
+}
 
 /// Is the end-of-image marker there? stb_image paints what is missing grey and says nothing.
 bool jpeg_is_whole(std::string_view bytes) {
@@ -94,6 +102,7 @@ CodedImage read_png_or_jpeg(const Path& file, std::string_view bytes, Meaning me
     const auto check = [&](bool good) {
         if (!good) fail(file, fmt::format("truncated or damaged {} ({})", kind, stbi_failure_reason()));
     };
+    if (is_png(bytes)) check_png_size(file, bytes);
     int width = 0, height = 0, channels = 0;
     check(stbi_info_from_memory(data, size, &width, &height, &channels) != 0);
     check_size(file, width, height);

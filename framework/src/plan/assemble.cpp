@@ -20,7 +20,7 @@ std::string upper(std::string text) {
     return text;
 }
 
-/// "bloom_down" -> "BloomDown".
+/// "glow_down" -> "GlowDown".
 std::string pascal(std::string_view snake) {
     std::string name;
     bool start = true;

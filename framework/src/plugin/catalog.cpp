@@ -4,6 +4,8 @@
 #include <postfx/error.hpp>
 
 #include <dlfcn.h>
+#include <elf.h>
+#include <link.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -11,6 +13,8 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <cstring>
+#include <fstream>
 
 namespace fs = std::filesystem;
 
@@ -53,6 +57,25 @@ std::string why_unsafe(const fs::path& path) {
     if (status.st_mode & S_IWOTH) return "is writable by everybody";
     if (status.st_uid != 0 && status.st_uid != ::geteuid()) return "belongs to another user";
     return "";
+}
+
+/// Does the file end before what its headers promise? Then it was copied or written half, and dlopen
+/// would not fail but die of SIGBUS. Anything else that may be wrong with it is dlopen's to say.
+bool is_cut(const fs::path& path) {
+    std::ifstream file(path, std::ios::binary | std::ios::ate);
+    const auto size = static_cast<std::uint64_t>(file.tellg());
+    ElfW(Ehdr) header{};
+    file.seekg(0);
+    file.read(reinterpret_cast<char*>(&header), sizeof(header));
+    if (!file || std::memcmp(header.e_ident, ELFMAG, SELFMAG) != 0) return false;
+    if (header.e_shoff + std::uint64_t{header.e_shnum} * header.e_shentsize > size) return true;
+    file.seekg(static_cast<std::streamoff>(header.e_phoff));
+    for (int i = 0; i < header.e_phnum; ++i) {
+        ElfW(Phdr) segment{};
+        file.read(reinterpret_cast<char*>(&segment), sizeof(segment));
+        if (!file || (segment.p_type == PT_LOAD && segment.p_offset + segment.p_filesz > size)) return true;
+    }
+    return false;
 }
 
 } // namespace
@@ -99,7 +122,8 @@ Catalog Catalog::discover(const std::vector<fs::path>& first) {
     for (const fs::path& directory : first) {
         // Named on the command line: a relative path is what the user typed, and a missing one is their
         // mistake.
-        if (!fs::is_directory(directory))
+        std::error_code missing;
+        if (!fs::is_directory(directory, missing))
             throw Error(Place{.file = directory.string()}, "no such plugin directory");
         catalog.scan(fs::absolute(directory));
     }
@@ -124,9 +148,13 @@ void Catalog::scan(const fs::path& directory) {
         return;
     }
     std::vector<fs::path> modules;
-    for (const fs::directory_entry& entry : fs::directory_iterator(directory)) {
+    std::error_code unreadable;
+    for (const fs::directory_entry& entry : fs::directory_iterator(directory, unreadable)) {
         const std::string name = entry.path().filename().string();
         if (name.starts_with("postfx_") && name.ends_with(".so")) modules.push_back(entry.path());
+    }
+    if (unreadable) {
+        notes_.push_back(fmt::format("{}: {}", directory.string(), unreadable.message()));
     }
     std::sort(modules.begin(), modules.end());
     for (const fs::path& module : modules) {
@@ -141,9 +169,11 @@ void Catalog::scan(const fs::path& directory) {
 void Catalog::load(const fs::path& module) {
     const fs::path path = fs::absolute(module);
     const Place place{.file = path.string()};
-    if (!fs::is_regular_file(path)) throw Error(place, "no such plugin file");
+    std::error_code missing;
+    if (!fs::is_regular_file(path, missing)) throw Error(place, "no such plugin file");
     if (const std::string unsafe = why_unsafe(path); !unsafe.empty())
         throw Error(place, "refused, the file " + unsafe);
+    if (is_cut(path)) throw Error(place, "not a loadable plugin: the file is cut short");
     // Never closed: unloading a library is the one thing about plugins that keeps going wrong (dlclose may
     // keep it, unmap code that still runs, or run destructors twice), and a module of constants costs only
     // its pages.
@@ -165,17 +195,34 @@ void Catalog::add(const postfx_module& declared, const fs::path& origin) {
             fmt::format("has ABI major version {}, this host speaks {}", module.abi_major, POSTFX_ABI_MAJOR));
     }
     const std::vector<SourceInfo> sources = read_sources(module, origin);
+    std::optional<Error> first_problem;
     for (std::uint32_t i = 0; i < module.effect_count; ++i) {
-        auto effect = std::make_shared<const EffectInfo>(read_effect(*module.effects[i], sources, origin));
-        const auto at =
-            std::lower_bound(effects_.begin(), effects_.end(), effect->id,
-                             [](const EffectPtr& e, const std::string& id) { return e->id < id; });
-        if (at != effects_.end() && (*at)->id == effect->id) {
-            notes_.push_back(fmt::format("{}: {} is shadowed by {}", origin.string(), effect->id,
-                                         (*at)->module_path.string()));
-        } else {
-            effects_.insert(at, std::move(effect));
+        try {
+            if (!module.effects[i]) {
+                throw Error(Place{.file = origin.string()},
+                            fmt::format("effect {} of its list is missing", i));
+            }
+            add(std::make_shared<const EffectInfo>(read_effect(*module.effects[i], sources, origin)));
+        } catch (const Error& error) {
+            // A bad effect takes no good one with it.
+            if (first_problem) {
+                notes_.emplace_back(error.what());
+            } else {
+                first_problem = error;
+            }
         }
+    }
+    if (first_problem) throw *first_problem;
+}
+
+void Catalog::add(EffectPtr effect) {
+    const auto at = std::lower_bound(effects_.begin(), effects_.end(), effect->id,
+                                     [](const EffectPtr& e, const std::string& id) { return e->id < id; });
+    if (at != effects_.end() && (*at)->id == effect->id) {
+        notes_.push_back(fmt::format("{}: {} is shadowed by {}", effect->module_path.string(), effect->id,
+                                     (*at)->module_path.string()));
+    } else {
+        effects_.insert(at, std::move(effect));
     }
 }
 

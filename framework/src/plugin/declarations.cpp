@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 namespace postfx {
 namespace {
@@ -44,6 +45,29 @@ bool is_id(std::string_view id) {
 
 std::string text_or_empty(const char* text) {
     return text ? text : "";
+}
+
+/// What kinds that are whole numbers ask of their range and default.
+void check_whole(const ParameterInfo& info, const Complaint& complain) {
+    if (info.kind == ParameterKind::number || info.kind == ParameterKind::color) return;
+    if (info.kind == ParameterKind::integer) {
+        using Limits = std::numeric_limits<std::int32_t>;
+        if (info.minimum < Limits::min() || info.maximum > Limits::max()) {
+            complain("parameter {} of kind int has the range {}..{}, more than 32 bits", info.id,
+                     info.minimum, info.maximum);
+        }
+    } else {
+        const double last =
+            info.kind == ParameterKind::toggle ? 1 : static_cast<double>(info.choices.size()) - 1;
+        if (info.minimum != 0 || info.maximum != last) {
+            complain("parameter {} of kind {} has the range {}..{}, not 0..{}", info.id, info.kind_name(),
+                     info.minimum, info.maximum, last);
+        }
+    }
+    if (info.default_value[0] != std::round(info.default_value[0])) {
+        complain("parameter {} of kind {} has the default {}", info.id, info.kind_name(),
+                 info.default_value[0]);
+    }
 }
 
 ParameterInfo read_parameter(const postfx_parameter& declared, const Complaint& complain) {
@@ -84,11 +108,14 @@ ParameterInfo read_parameter(const postfx_parameter& declared, const Complaint& 
             complain("parameter {} has its identity {} outside its range", info.id, *info.identity);
         }
     }
-    for (std::uint32_t i = 0; i < declared.choice_count; ++i)
-        info.choices.emplace_back(declared.choices[i]);
+    for (std::uint32_t i = 0; i < declared.choice_count; ++i) {
+        info.choices.push_back(text_or_empty(declared.choices[i]));
+        if (info.choices.back().empty()) complain("parameter {} has a choice without a name", info.id);
+    }
     if ((info.kind == ParameterKind::choice) == info.choices.empty()) {
         complain("parameter {} of kind {} has {} choices", info.id, kind, info.choices.size());
     }
+    check_whole(info, complain);
     return info;
 }
 

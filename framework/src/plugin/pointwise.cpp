@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <optional>
 
 namespace postfx {
 namespace {
@@ -50,91 +51,207 @@ bool is_forbidden(std::string_view word) {
            || (word.starts_with("sampler") && word != "sampler2D");
 }
 
-/// Walks over GLSL and hands out what is left when comments are gone.
-class Reader {
-public:
-    explicit Reader(std::string_view text) : text_(text) {}
+bool is_blank(char c) {
+    return c == ' ' || c == '\t' || c == '\r';
+}
 
-    bool done() {
-        skip_comments();
-        return at_ >= text_.size();
-    }
-    char peek() const { return text_[at_]; }
-    int line() const { return line_; }
-    void advance() {
-        if (text_[at_] == '\n') {
-            ++line_;
-            at_line_start_ = true;
-        } else if (!std::isspace(static_cast<unsigned char>(text_[at_]))) {
-            at_line_start_ = false;
+std::string_view row_at(std::string_view text, std::size_t at) {
+    return text.substr(at, std::min(text.find('\n', at), text.size()) - at);
+}
+
+std::string_view trimmed(std::string_view row) {
+    while (!row.empty() && is_blank(row.front()))
+        row.remove_prefix(1);
+    while (!row.empty() && is_blank(row.back()))
+        row.remove_suffix(1);
+    return row;
+}
+
+/// Takes comments out of GLSL, line by line as they were. What a compiler might take for a comment where this
+/// does not, or the other way round, is refused: continued lines, lone carriage returns, and #include lines
+/// (which are replaced as a whole before the compiler sees the text) that begin or end a comment.
+class Uncommenter {
+public:
+    explicit Uncommenter(std::string_view text) : text_(text) {}
+
+    /// Why not; nothing if `code()` can be believed.
+    std::optional<std::string> run() {
+        for (at_ = 0; at_ < text_.size(); ++at_) {
+            const char c = text_[at_], next = at_ + 1 < text_.size() ? text_[at_ + 1] : '\0';
+            if (c == '\\') return refuse("has a line continuation, which could hide a directive");
+            if (c == '\r' && next != '\n') return refuse("has a carriage return inside a line");
+            if (at_ == 0 || text_[at_ - 1] == '\n') {
+                if (auto why = check_include(trimmed(row_at(text_, at_)))) return why;
+            }
+            step(c, next);
         }
+        if (state_ == State::block) {
+            line_ = opened_;
+            return refuse("has a comment without an end");
+        }
+        return std::nullopt;
+    }
+    const std::string& code() const { return code_; }
+
+private:
+    enum class State { code, line, block };
+
+    void step(char c, char next) {
+        if (c == '\n') {
+            ++line_;
+            if (state_ == State::line) state_ = State::code;
+            code_ += c;
+        } else if (state_ == State::code && c == '/' && (next == '/' || next == '*')) {
+            state_ = next == '/' ? State::line : State::block;
+            opened_ = line_;
+            blank_two();
+        } else if (state_ == State::block && c == '*' && next == '/') {
+            state_ = State::code;
+            blank_two();
+        } else {
+            code_ += state_ == State::code ? c : ' ';
+        }
+    }
+
+    void blank_two() {
+        code_ += "  ";
         ++at_;
     }
-    bool at_line_start() const { return at_line_start_; }
-    std::string_view word() {
-        const std::size_t start = at_;
-        while (at_ < text_.size() && is_word_character(text_[at_]))
-            advance();
-        return text_.substr(start, at_ - start);
+
+    std::optional<std::string> check_include(std::string_view row) const {
+        if (!row.starts_with("#include")) return std::nullopt;
+        if (state_ == State::block) return refuse("has an #include in a comment");
+        if (row.find("//") != row.npos || row.find("/*") != row.npos) {
+            return refuse("has a comment behind an #include");
+        }
+        return std::nullopt;
     }
-    void skip_blanks() {
-        while (at_ < text_.size() && (text_[at_] == ' ' || text_[at_] == '\t'))
-            advance();
+
+    std::string refuse(std::string_view why) const { return fmt::format("line {}: {}", line_, why); }
+
+    std::string_view text_;
+    std::string code_;
+    std::size_t at_ = 0;
+    State state_ = State::code;
+    int line_ = 1, opened_ = 1;
+};
+
+/// Reads GLSL without comments, word by word.
+class Scan {
+public:
+    explicit Scan(std::string_view code) : code_(code) {}
+
+    std::optional<std::string> run() {
+        while (at_ < code_.size() && !why_) {
+            const char c = code_[at_];
+            if (c == '#') {
+                begin_directive();
+            } else if (is_word_character(c)) {
+                read_word();
+            } else {
+                if (c == '\n') {
+                    end_line();
+                } else if (!is_blank(c)) {
+                    read_mark(c);
+                }
+                ++at_;
+            }
+        }
+        if (!why_) end_line();
+        return why_;
     }
 
 private:
-    void skip_comments() {
-        while (at_ + 1 < text_.size() && text_[at_] == '/') {
-            const bool line_comment = text_[at_ + 1] == '/';
-            if (!line_comment && text_[at_ + 1] != '*') return;
-            const bool was_line_start = at_line_start_;
-            const std::string_view end = line_comment ? "\n" : "*/";
-            const std::size_t found = text_.find(end, at_ + 2);
-            const std::size_t stop =
-                found == text_.npos ? text_.size() : found + (line_comment ? 0 : end.size());
-            while (at_ < stop)
-                advance();
-            if (!line_comment) at_line_start_ = was_line_start;
+    template<class... Args>
+    void refuse(fmt::format_string<Args...> format, Args&&... args) {
+        why_ = fmt::format("line {}: {}", line_, fmt::format(format, std::forward<Args>(args)...));
+    }
+
+    std::string_view take_word() {
+        while (at_ < code_.size() && is_blank(code_[at_]))
+            ++at_;
+        const std::size_t start = at_;
+        while (at_ < code_.size() && is_word_character(code_[at_]))
+            ++at_;
+        return code_.substr(start, at_ - start);
+    }
+
+    void begin_directive() {
+        if (!at_line_start_) return refuse("has a # inside a line");
+        ++at_;
+        at_line_start_ = false;
+        in_directive_ = true;
+        const std::string_view directive = take_word();
+        if (directive != "include" && directive != "define") {
+            return refuse("has the directive #{}", directive);
+        }
+        if (directive == "include") return;
+        // A macro of another name could stand in the code that is generated behind this.
+        const std::string_view name = take_word();
+        const auto capital = [](char c) {
+            return (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_';
+        };
+        if (!std::all_of(name.begin(), name.end(), capital)) {
+            refuse("defines the macro {}, whose name is not in capitals", name);
         }
     }
 
-    std::string_view text_;
+    void read_word() {
+        at_line_start_ = false;
+        const std::string_view word = take_word();
+        if (is_forbidden(word)) return refuse("uses {}", word);
+        if (in_directive_ || depth_ > 0) return;
+        if (word == "in" || word == "out") return refuse("declares a shader {}put", word);
+        if (first_.empty()) first_ = word;
+        last_ = word;
+    }
+
+    void read_mark(char c) {
+        at_line_start_ = false;
+        if (c == '(' && depth_ == 0 && !in_directive_) called_ = true;
+        const bool ends_name = c == '=' || c == ';' || c == ',';
+        if (!in_directive_ && depth_ == 0 && ends_name) {
+            // A variable that outlives a call would join what should not know of each other.
+            if (!first_.empty() && !called_ && first_ != "const" && first_ != "struct"
+                && first_ != "precision") {
+                return refuse("declares the variable {} outside functions", last_);
+            }
+        }
+        int& depth = in_directive_ ? directive_depth_ : depth_;
+        if (c == '(' || c == '{' || c == '[') ++depth;
+        if (c == ')' || c == '}' || c == ']') --depth;
+        if (depth < 0) return refuse("closes a bracket that is not open");
+        if (!in_directive_ && depth_ == 0 && (c == ';' || c == '}')) end_statement();
+    }
+
+    void end_line() {
+        if (directive_depth_ != 0) return refuse("defines a macro that leaves a bracket open");
+        ++line_;
+        at_line_start_ = true;
+        in_directive_ = false;
+    }
+
+    void end_statement() {
+        first_ = last_ = {};
+        called_ = false;
+    }
+
+    std::string_view code_;
     std::size_t at_ = 0;
+    std::optional<std::string> why_;
     int line_ = 1;
-    bool at_line_start_ = true;
+    bool at_line_start_ = true, in_directive_ = false;
+    int depth_ = 0, directive_depth_ = 0; ///< of brackets of any kind
+    std::string_view first_, last_;       ///< words of the statement outside functions
+    bool called_ = false;                 ///< it has an argument list, so it is a function
 };
 
 } // namespace
 
 std::string why_not_pointwise(std::string_view glsl) {
-    Reader reader(glsl);
-    int depth = 0; // of brackets of any kind; in/out are qualifiers of arguments inside them
-    while (!reader.done()) {
-        const char c = reader.peek();
-        const int line = reader.line();
-        if (c == '\\')
-            return fmt::format("line {}: has a line continuation, which could hide a directive", line);
-        if (c == '#') {
-            if (!reader.at_line_start()) return fmt::format("line {}: has a # inside a line", line);
-            reader.advance();
-            reader.skip_blanks();
-            const std::string_view directive = reader.word();
-            if (directive != "include" && directive != "define") {
-                return fmt::format("line {}: has the directive #{}", line, directive);
-            }
-        } else if (is_word_character(c)) {
-            const std::string_view word = reader.word();
-            if (is_forbidden(word)) return fmt::format("line {}: uses {}", line, word);
-            if (depth == 0 && (word == "in" || word == "out")) {
-                return fmt::format("line {}: declares a shader {}put", line, word);
-            }
-        } else {
-            if (c == '(' || c == '{' || c == '[') ++depth;
-            if (c == ')' || c == '}' || c == ']') --depth;
-            reader.advance();
-        }
-    }
-    return "";
+    Uncommenter uncommenter(glsl);
+    if (const auto why = uncommenter.run()) return *why;
+    return Scan(uncommenter.code()).run().value_or("");
 }
 
 } // namespace postfx

@@ -100,7 +100,7 @@ MadeParts make_car() {
     plate.append(box({0.52f, 0.11f, 0.02f}), at({0, 0.44f, -2.22f}));
     // Mirrors and sills.
     both_sides(paint, loft({{-0.62f, 0.09f, 0.08f, 0.94f, 1.06f}, {-0.5f, 0.11f, 0.1f, 0.93f, 1.08f}}, 16, 4),
-               {0.98f, 0, 0});
+               {0.93f, 0, 0});
     both_sides(trim, box({0.05f, 0.1f, 1.9f}), {0.89f, 0.22f, 0});
 
     MadeParts parts;

@@ -60,19 +60,33 @@ MadeParts conifer(Random& random, float height) {
     return {{"trunk", std::move(trunk)}, {"needles", std::move(needles)}};
 }
 
-/// A ball pushed in and out by noise.
+/// A ball pushed in and out by noise, in one skin so that its light is smooth.
 Mesh crown(Random& random, float radius) {
-    Mesh mesh = sphere(1, 10);
+    constexpr int around = 14, up = 8;
     const auto seed = random.next();
-    for (Vertex& vertex : mesh.vertices) {
-        const glm::vec3 p = vertex.position * 2.1f;
-        // Two slices of plane noise: continuous over the sphere, seam included.
-        const double bump =
-            lattice_noise(p.x + 3.1 * p.y, p.z, seed) + lattice_noise(p.y - p.x, p.z + 2.3 * p.y, seed + 1);
-        vertex.position *= radius * (1 + 0.2f * static_cast<float>(bump));
-        vertex.tint = glm::vec3(0.75f + 0.35f * vertex.normal.y + 0.15f * static_cast<float>(bump));
+    Mesh mesh;
+    for (int row = 0; row <= up; ++row) {
+        const float polar = std::numbers::pi_v<float> * (static_cast<float>(row) / up - 0.5f);
+        for (int column = 0; column < around; ++column) {
+            const float angle = two_pi * (static_cast<float>(column) + 0.5f * static_cast<float>(row % 2)) / around;
+            const glm::vec3 p(std::cos(polar) * std::cos(angle), std::sin(polar), -std::cos(polar) * std::sin(angle));
+            // Slices of plane noise: continuous over the sphere.
+            const auto bump = [&](float scale, std::uint32_t octave) {
+                return lattice_noise(scale * (p.x + 1.3f * p.y), scale * p.z, seed + octave) +
+                       lattice_noise(scale * (p.y - p.x), scale * (p.z + 1.1f * p.y), seed + octave + 1);
+            };
+            const auto swell = static_cast<float>(0.16 * bump(1.9f, 0) + 0.1 * bump(5.3f, 2));
+            mesh.add({radius * p * (1 + swell), p, {0, 0}, glm::vec3(0.7f + 0.3f * p.y + 1.4f * swell)});
+        }
+    }
+    for (std::uint32_t row = 0; row < up; ++row) {
+        for (std::uint32_t column = 0; column < around; ++column) {
+            const std::uint32_t a = row * around + column, b = row * around + (column + 1) % around;
+            mesh.quad(a, b, b + around, a + around);
+        }
     }
     compute_normals(mesh);
+    for (Vertex& vertex : mesh.vertices) vertex.tint = glm::max(vertex.tint, glm::vec3(0.25f));
     return mesh;
 }
 
@@ -80,7 +94,7 @@ MadeParts broadleaf(Random& random, float height) {
     Mesh trunk = cylinder(0.024f * height, 0.6f * height, 6);
     Mesh leaves;
     const glm::vec3 tint = varied(random, 0.25f);
-    const int crowns = 4 + static_cast<int>(random.unit() * 3);
+    const int crowns = 6 + static_cast<int>(random.unit() * 3);
     for (int i = 0; i < crowns; ++i) {
         const float angle = two_pi * (static_cast<float>(i) + random.unit()) / static_cast<float>(crowns);
         const float away = i == 0 ? 0 : height * random.between(0.1f, 0.2f);
@@ -94,7 +108,7 @@ MadeParts broadleaf(Random& random, float height) {
                                   glm::vec4(foot, 1));
             trunk.append(cone(0.012f * height, glm::length(at - foot), 5), place);
         }
-        leaves.append(crown(random, height * random.between(0.14f, 0.23f)), glm::translate(glm::mat4(1), at),
+        leaves.append(crown(random, height * random.between(0.13f, 0.21f)), glm::translate(glm::mat4(1), at),
                       tint);
     }
     return {{"trunk", std::move(trunk)}, {"leaves", std::move(leaves)}};

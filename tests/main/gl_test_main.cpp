@@ -1,11 +1,9 @@
-// Catch2 with the main() of a GL test: without a GL 4.5 context it says why and exits with 77, which CTest
-// shows as skipped. Include it once per test executable, instead of <catch2/catch.hpp>.
-#pragma once
-
+// main() of tests that need OpenGL: without a GL 4.5 context it says why and exits with 77, which CTest shows as
+// skipped. Catch2's own code is compiled here once, not in every test.
 #define CATCH_CONFIG_RUNNER
 #include <catch2/catch.hpp>
 
-#include "testing.hpp"
+#include <testing.hpp>
 
 #include <cstdio>
 

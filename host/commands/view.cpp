@@ -1,0 +1,178 @@
+// postfx view: the chain live in a window.
+#include "command.hpp"
+#include "options.hpp"
+#include "picture.hpp"
+#include "resources.hpp"
+#include "scene_input.hpp"
+
+#include "window/fly_camera.hpp"
+#include "window/window.hpp"
+
+#include <gl/clock.hpp>
+#include <gl/context.hpp>
+#include <gl/objects.hpp>
+
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <filesystem>
+
+namespace postfx::host {
+namespace {
+
+constexpr const char* help = "  W A S D, Q E   fly: forward, left, back, right, down, up (Shift: fast)\n"
+                             "  right mouse    look around\n"
+                             "  1 - 9          turn the chain's n-th effect on or off\n"
+                             "  P              pause the scene\n"
+                             "  R              tell what ran and why\n"
+                             "  F12            save a picture beside the others (postfx_0000.png ...)\n"
+                             "  H              this help\n"
+                             "  Esc            leave\n";
+
+/// The first postfx_NNNN.png that is not there yet.
+std::filesystem::path next_screenshot() {
+    for (int i = 0;; ++i) {
+        std::filesystem::path file = fmt::format("postfx_{:04}.png", i);
+        if (!std::filesystem::exists(file)) return file;
+    }
+}
+
+Steering steering_of(const Window& window) {
+    const auto axis = [&](int positive, int negative) {
+        return static_cast<double>(window.is_down(positive)) - static_cast<double>(window.is_down(negative));
+    };
+    constexpr double degrees_per_pixel = 0.15;
+    Steering steering;
+    steering.move = {axis(GLFW_KEY_D, GLFW_KEY_A), axis(GLFW_KEY_E, GLFW_KEY_Q),
+                     axis(GLFW_KEY_W, GLFW_KEY_S)};
+    steering.turn = glm::dvec2(window.drag().x, -window.drag().y) * degrees_per_pixel;
+    steering.fast = window.is_down(GLFW_KEY_LEFT_SHIFT);
+    return steering;
+}
+
+/// Copies the picture's codes to the window as they are.
+class Presenter {
+public:
+    void show(std::uint32_t texture, glm::ivec2 size) {
+        if (texture != shown_ || size != size_) framebuffer_ = gl::make_framebuffer({texture});
+        shown_ = texture;
+        size_ = size;
+        glBlitNamedFramebuffer(framebuffer_.name(), 0, 0, 0, size.x, size.y, 0, 0, size.x, size.y,
+                               GL_COLOR_BUFFER_BIT, GL_NEAREST);
+    }
+
+private:
+    gl::Framebuffer framebuffer_;
+    std::uint32_t shown_ = 0;
+    glm::ivec2 size_{0};
+};
+
+class ViewCommand : public Command {
+public:
+    void declare(CLI::App& app) override {
+        scene_options_.declare(app);
+        chain_options_.declare(app);
+        catalog_options_.declare(app);
+        app.add_option("--frames", frames_, "Leave after so many frames; 0 = stay")->capture_default_str();
+        app.add_option("-o,--output", output_, "On leaving, write the last picture here")
+            ->type_name("FILE.png");
+        app.footer(std::string("Keys:\n") + help);
+    }
+
+    Status run() override {
+        const Catalog catalog = catalog_options_.load();
+        Chain chain = chain_options_.read(catalog);
+        const Scene scene = scene_options_.open();
+        Facts facts = scene_options_.facts(scene, scene_options_.time(), Output::display);
+        if (!output_.empty() && output_for(output_) != Output::display) {
+            throw Error(Place{.file = output_}, "the window's picture is for display: name a .png");
+        }
+        Window window(facts.width, facts.height, "postfx", false);
+        ChainRunner runner(std::move(chain), facts);
+        SceneRenderer renderer(scene);
+        fmt::print("{}", help);
+        loop(window, runner, renderer, scene);
+        if (!output_.empty()) write_picture(runner, output_, false);
+        return Status::success;
+    }
+
+private:
+    void loop(Window& window, ChainRunner& runner, SceneRenderer& renderer, const Scene& scene) {
+        Presenter presenter;
+        FlyCamera pilot(scene.camera_at(scene_options_.time()));
+        double scene_time = scene_options_.time();
+        double last = gl::HostTime::now().wall_ms;
+        for (std::uint32_t frame = 0; !window.should_close() && (frames_ == 0 || frame < frames_); ++frame) {
+            const double now = gl::HostTime::now().wall_ms;
+            const double seconds = (now - last) / 1000;
+            last = now;
+            if (!paused_) scene_time += seconds;
+            pilot.steer(steering_of(window), seconds);
+
+            const glm::ivec2 size = window.size();
+            if (size.x > 0 && size.y > 0) {
+                // Until the pilot takes over, the scene's own camera drives.
+                const Camera camera = pilot.moved() ? pilot.camera() : scene.camera_at(scene_time);
+                follow(runner, camera, size);
+                FrameInputs inputs;
+                inputs.camera = camera;
+                inputs.time = scene_time;
+                inputs.frame = frame;
+                const Textures textures = textures_of(renderer.render(
+                    size.x, size.y, scene_time, runner.attachments(), CameraOverride{camera, {}}));
+                presenter.show(runner.run(textures, inputs, Timing::off), size);
+            }
+            handle_keys(window, runner);
+            window.set_title(fmt::format("postfx  {}  {:.0f} ms{}", scene.name, seconds * 1000,
+                                         paused_ ? "  paused" : ""));
+            window.swap_and_poll();
+        }
+    }
+
+    static void follow(ChainRunner& runner, const Camera& camera, glm::ivec2 size) {
+        Facts facts = runner.facts();
+        facts.camera = camera;
+        facts.width = size.x;
+        facts.height = size.y;
+        runner.replan(facts);
+    }
+
+    void handle_keys(Window& window, ChainRunner& runner) {
+        for (int key : window.pressed_keys()) {
+            if (key >= GLFW_KEY_1 && key <= GLFW_KEY_9)
+                toggle(runner, static_cast<std::size_t>(key - GLFW_KEY_1));
+            if (key == GLFW_KEY_P) paused_ = !paused_;
+            if (key == GLFW_KEY_H) fmt::print("{}", help);
+            if (key == GLFW_KEY_R) fmt::print("{}", report_text(runner.executor().report()));
+            if (key == GLFW_KEY_ESCAPE) window.close();
+            if (key == GLFW_KEY_F12) {
+                const std::filesystem::path file = next_screenshot();
+                write_picture(runner, file, false);
+                fmt::print("wrote {}\n", file.string());
+            }
+        }
+    }
+
+    static void toggle(ChainRunner& runner, std::size_t index) {
+        std::vector<ChainEntry>& entries = runner.chain().entries;
+        if (index >= entries.size()) return;
+        entries[index].enabled = !entries[index].enabled;
+        runner.replan(runner.facts());
+        fmt::print("{} is {}\n", entries[index].name, entries[index].enabled ? "on" : "off");
+    }
+
+    SceneOptions scene_options_{"night_drive"};
+    ChainOptions chain_options_{"cinematic"};
+    CatalogOptions catalog_options_;
+    std::uint32_t frames_ = 0;
+    std::string output_;
+    bool paused_ = false;
+};
+
+const Register<ViewCommand> registered("view", "Show a scene through a chain in a window");
+
+} // namespace
+} // namespace postfx::host

@@ -1,0 +1,131 @@
+// Rules of the tree itself: what plugins export, and that the framework names no effect.
+#include <catch2/catch.hpp>
+
+#include "fixtures.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <sstream>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace fs = std::filesystem;
+using postfx::testing::fixture;
+
+namespace {
+
+std::string output_of(const std::string& command) {
+    FILE* pipe = ::popen(command.c_str(), "r");
+    REQUIRE(pipe);
+    std::string text;
+    char part[4096];
+    for (std::size_t n = 0; (n = std::fread(part, 1, sizeof(part), pipe)) > 0;)
+        text.append(part, n);
+    REQUIRE(::pclose(pipe) == 0);
+    return text;
+}
+
+struct Symbol {
+    char type = 0; ///< as nm prints it; 'u' is STB_GNU_UNIQUE
+    std::string name;
+};
+
+std::vector<Symbol> exported(const fs::path& module) {
+    std::istringstream lines(output_of("nm -D --defined-only '" + module.string() + "'"));
+    std::vector<Symbol> symbols;
+    std::string address, type, name;
+    while (lines >> address >> type >> name)
+        symbols.push_back({type.front(), name});
+    return symbols;
+}
+
+std::vector<fs::path> built_plugins() {
+    std::vector<fs::path> modules;
+    for (const char* name : {"blur", "curve", "faulty", "gauge", "grown", "many", "pack", "plain_c", "shift",
+                             "split", "tint", "unknown_words", "wrong_major"}) {
+        modules.push_back(fixture(name));
+    }
+    const fs::path plugins = fs::path(POSTFX_BUILD_DIRECTORY) / "postfx_plugins";
+    if (fs::is_directory(plugins)) {
+        for (const auto& entry : fs::directory_iterator(plugins)) {
+            if (entry.path().extension() == ".so") modules.push_back(entry.path());
+        }
+    }
+    return modules;
+}
+
+std::string text_of(const fs::path& file) {
+    std::ifstream stream(file, std::ios::binary);
+    return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+}
+
+std::string lower(std::string text) {
+    std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return std::tolower(c); });
+    return text;
+}
+
+/// Where `word` stands in `text` with no letter or digit beside it, so that glow_down and GLOW_TAPS count for
+/// "glow"; npos if nowhere.
+std::size_t find_name(std::string_view text, std::string_view word) {
+    const auto outside = [&](std::size_t at) {
+        return at >= text.size() || !std::isalnum(static_cast<unsigned char>(text[at]));
+    };
+    for (std::size_t at = 0; (at = text.find(word, at)) != text.npos; ++at) {
+        if (outside(at - 1) && outside(at + word.size())) return at; // at - 1 wraps beyond the end at 0
+    }
+    return text.npos;
+}
+
+} // namespace
+
+#if defined(__SANITIZE_ADDRESS__)
+constexpr bool sanitized = true; // AddressSanitizer exports symbols of its own
+#else
+constexpr bool sanitized = false;
+#endif
+
+TEST_CASE("a plugin exports postfx_module_v1 and nothing else") {
+    if (sanitized) return;
+    for (const fs::path& module : built_plugins()) {
+        INFO(module);
+        const std::vector<Symbol> symbols = exported(module);
+        REQUIRE(symbols.size() == 1);
+        CHECK(symbols[0].name == "postfx_module_v1");
+        // Constant data, 'R' where nothing in it is relocated and 'D' where pointers are.
+        CHECK(std::string("RDB").find(symbols[0].type) != std::string::npos);
+    }
+}
+
+TEST_CASE("names are found as words") {
+    CHECK(find_name("a glow here", "glow") == 2);
+    CHECK(find_name("glow", "glow") == 0);
+    CHECK(find_name("glow_down.glsl", "glow") == 0);
+    CHECK(find_name("the_glow", "glow") == 4);
+    CHECK(find_name("glowing afterglow", "glow") == std::string::npos);
+}
+
+TEST_CASE("framework and host name no effect") {
+    const fs::path source(POSTFX_SOURCE_DIRECTORY);
+    std::vector<std::string> effects;
+    for (const auto& folder : fs::directory_iterator(source / "plugins")) {
+        if (folder.is_directory()) effects.push_back(lower(folder.path().filename().string()));
+    }
+    for (const char* room : {"framework", "host", "shaders", "cmake", "tests/harness", "tests/fixtures"}) {
+        for (const auto& entry : fs::recursive_directory_iterator(source / room)) {
+            if (!entry.is_regular_file()) continue;
+            const std::string text = lower(text_of(entry.path()));
+            for (const std::string& effect : effects) {
+                const std::size_t at = find_name(text, effect);
+                if (at == std::string::npos) continue;
+                const auto line =
+                    1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(at), '\n');
+                FAIL_CHECK(entry.path().string() << ":" << line << " names the effect " << effect);
+            }
+        }
+    }
+}
