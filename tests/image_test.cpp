@@ -181,6 +181,12 @@ TEST_CASE("JPEG") {
     const std::string bytes = file_bytes(file);
     check_truncated(directory, file, bytes.size(), 7);
     check_truncated(directory, file, bytes.size(), bytes.size() - 1);
+
+    // A Huffman table that claims more codes than there are bytes.
+    std::string hostile = bytes;
+    hostile.replace(hostile.find("\xff\xc4") + 5, 16, 16, '\xff');
+    put_bytes(directory / "hostile.jpg", hostile);
+    CHECK(read_error(directory / "hostile.jpg").find("Huffman") != std::string::npos);
 }
 
 TEST_CASE("PFM keeps every bit, in both byte orders, bottom row first") {

@@ -8,6 +8,7 @@
 #include <gl/clock.hpp>
 #include <gl/context.hpp>
 #include <gl/objects.hpp>
+#include <image/metrics.hpp>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -191,7 +192,10 @@ private:
         if (with_scene_) cases.push_back({"scene alone", framed([] {}), {}, {}, {}});
         for (const std::string& rival : rivals_) {
             const Format format = linear_ ? facts_.working_format : Format::rgba8;
-            cases.push_back({rival, framed(plain(format, read_text(rival), rival)), {}, {}, {}});
+            const auto pass =
+                std::make_shared<PlainPass>(facts_.width, facts_.height, format, read_text(rival), rival);
+            cases.push_back({rival, framed([pass, color] { pass->draw(color); }), {}, {}, {}});
+            compare_with_rival(*pass, rival, textures);
         }
         FrameInputs frame;
         frame.camera = facts_.camera;
@@ -207,6 +211,22 @@ private:
         if (passes_) frame_ = frame;
         textures_ = textures;
         return cases;
+    }
+
+    /// A rival that draws another picture measures nothing: tell how far it is from the first chain's.
+    void compare_with_rival(const PlainPass& pass, const std::string& name, const Textures& textures) {
+        FrameInputs frame;
+        frame.camera = facts_.camera;
+        frame.time = scene_options_.time();
+        pass.draw(textures.at("color"));
+        runners_.front().runner->run(textures, frame, Timing::off);
+        const Difference difference =
+            compare(pass.picture(), runners_.front().runner->executor().read_picture());
+        const std::size_t pixels = static_cast<std::size_t>(facts_.width) * facts_.height;
+        rival_notes_.push_back(
+            fmt::format("{} and {} differ by at most {:.4f} in {:.3f} % of the pixels", name,
+                        runners_.front().name, difference.max_abs,
+                        100.0 * static_cast<double>(difference.differing) / static_cast<double>(pixels)));
     }
 
     void measure(std::vector<Case>& cases) {
@@ -268,13 +288,11 @@ private:
         const double copy = unit_of(cases.front());
         const std::string clock_text = gpu ? clock.text : "CPU time of all threads; " + clock.text;
         if (json_) {
-            nlohmann::ordered_json json = {{"device", device.renderer},
-                                           {"clock", clock_text},
-                                           {"width", facts_.width},
-                                           {"height", facts_.height},
-                                           {"format", format_},
-                                           {"samples", samples_},
-                                           {"rows", nlohmann::ordered_json::array()}};
+            nlohmann::ordered_json json = {
+                {"device", device.renderer}, {"clock", clock_text},
+                {"width", facts_.width},     {"height", facts_.height},
+                {"format", format_},         {"samples", samples_},
+                {"rivals", rival_notes_},    {"rows", nlohmann::ordered_json::array()}};
             for (const Case& row : cases) {
                 nlohmann::ordered_json item = {
                     {"name", row.name}, {"cpu_ms", spread(row.cpu_ms)}, {"wall_ms", spread(row.wall_ms)}};
@@ -297,6 +315,8 @@ private:
                        quantile(times, 0.5), quantile(times, 0.1), quantile(times, 0.9),
                        quantile(row.wall_ms, 0.5), unit_of(row) / copy);
         }
+        for (const std::string& note : rival_notes_)
+            fmt::print("{}\n", note);
     }
 
     SceneOptions scene_options_{"night_drive"};
@@ -311,6 +331,7 @@ private:
     Textures textures_;
     std::vector<NamedRunner> runners_;
     std::vector<Case> pass_rows_;
+    std::vector<std::string> rival_notes_;
 };
 
 const Register<BenchCommand> registered("bench", "Measure what chains cost, in copy passes");

@@ -4,6 +4,7 @@
 #include <postfx/error.hpp>
 
 #include <fmt/format.h>
+#include <glm/gtc/matrix_transform.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -28,7 +29,27 @@ void add_directional(Scene& scene, glm::dvec3 from, glm::vec3 color, double exte
     scene.lights.push_back(light);
 }
 
-/// A model alone: seen a little from above and the side, lit from the front left, in front of grey.
+/// Where a model is open: the sum of its faces' directions, which is 0 for a closed surface, as a share of its area. A
+/// room without its front wall gives the way out of it.
+glm::dvec3 opening(const Scene& scene) {
+    glm::dvec3 sum(0);
+    double area = 0;
+    for (const Part& part : scene.nodes.front().parts) {
+        const Mesh& mesh = *part.mesh;
+        for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
+            const glm::dvec3 a(mesh.vertices[mesh.indices[i]].position);
+            const glm::dvec3 b(mesh.vertices[mesh.indices[i + 1]].position);
+            const glm::dvec3 c(mesh.vertices[mesh.indices[i + 2]].position);
+            const glm::dvec3 face = glm::cross(b - a, c - a);
+            sum += face;
+            area += glm::length(face);
+        }
+    }
+    return area > 0 ? sum / area : sum;
+}
+
+/// A model alone, in front of grey: seen a little from above and the side and lit from the front left; or, when it is
+/// open to one side as a room is, looked at and lit through that.
 Scene scene_around_model(const std::filesystem::path& file) {
     Model model = load_model(file);
     Scene scene;
@@ -45,16 +66,24 @@ Scene scene_around_model(const std::filesystem::path& file) {
     const Bounds bounds = scene.bounds();
     const double radius = std::max(static_cast<double>(bounds.radius()), 1e-6);
     const glm::dvec3 center(bounds.center());
-    const double distance = radius / std::sin(glm::radians(scene.camera.vertical_fov / 2));
+    const glm::dvec3 out = opening(scene);
+    const bool is_room = std::hypot(out.x, out.z) > 0.08; // small holes of a closed model stay below that
+    const double yaw = is_room ? std::atan2(out.x, out.z) : 0;
+    const auto turned = [&](double x, double y, double z) {
+        return glm::dvec3(glm::rotate(glm::dmat4(1), yaw, {0, 1, 0}) * glm::dvec4(x, y, z, 0));
+    };
     scene.camera.vertical_fov = 35;
+    const double distance = 1.04 * radius / std::sin(glm::radians(scene.camera.vertical_fov / 2));
+    const glm::dvec3 from = is_room ? turned(0.06, 0.05, 1) : turned(0.42, 0.2, 1);
     scene.camera.look_at = center;
-    scene.camera.position = center + 1.12 * distance * glm::normalize(glm::dvec3(0.42, 0.2, 1));
+    scene.camera.position = center + distance * glm::normalize(from);
     scene.camera.near_plane = 0.01 * radius;
-    scene.camera.focus_distance = glm::length(scene.camera.position - center);
+    scene.camera.focus_distance = distance;
 
-    add_directional(scene, {-0.6, 0.9, 1}, {1.9f, 1.8f, 1.65f}, 2.4 * radius, true);
-    add_directional(scene, {1, 0.3, 0.5}, {0.35f, 0.4f, 0.5f}, 0, false);
-    add_directional(scene, {0.5, 0.8, -1}, {1.0f, 1.0f, 1.1f}, 0, false);
+    const glm::dvec3 key = is_room ? turned(-0.35, 0.35, 1) : turned(-0.6, 0.9, 1);
+    add_directional(scene, key, {1.9f, 1.8f, 1.65f}, 2.4 * radius, true);
+    add_directional(scene, turned(1, 0.3, 0.5), {0.35f, 0.4f, 0.5f}, 0, false);
+    add_directional(scene, turned(0.5, 0.8, -1), {1.0f, 1.0f, 1.1f}, 0, false);
     scene.surroundings.zenith = {0.34f, 0.36f, 0.4f};
     scene.surroundings.horizon = {0.16f, 0.165f, 0.17f};
     scene.surroundings.ground = {0.07f, 0.07f, 0.07f};

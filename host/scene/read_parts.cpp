@@ -162,7 +162,8 @@ Light read_light(const YamlValue& value) {
         light.kind = kind == "spot" ? Light::Kind::spot : Light::Kind::point;
         keys.push_back("attenuation");
         light.attenuation = {1, 0, 1};
-        if (kind == "spot") keys.insert(keys.end(), {"inner_angle", "outer_angle", "shadow", "shadow_softness"});
+        if (kind == "spot")
+            keys.insert(keys.end(), {"inner_angle", "outer_angle", "shadow", "shadow_softness"});
     }
     const YamlMap map(entries.front().second, kind + " light", keys);
     float intensity = 1;

@@ -144,15 +144,14 @@ ViewBlock SceneRenderer::State::make_view(const Camera& camera, glm::dvec2 shift
 
 void SceneRenderer::State::add_lights(ViewBlock& view) const {
     const std::size_t count = std::min(scene.lights.size(), max_lights);
-        for (std::size_t i = 0; i < count; ++i) {
+    for (std::size_t i = 0; i < count; ++i) {
         const Light& light = scene.lights[i];
         const glm::dmat4& place = nodes[light.node];
         const float outer = std::cos(glm::radians(light.outer_angle)),
                     inner = std::cos(glm::radians(light.inner_angle));
-        view.lights[i] = {glm::vec4(glm::vec3(place[3]), 1),
-                          glm::vec4(glm::normalize(glm::vec3(-place[2])), outer),
-                          glm::vec4(light.color, 1 / std::max(inner - outer, 1e-4f)),
-                          glm::vec4(light.attenuation, 0)};
+        view.lights[i] = {
+            glm::vec4(glm::vec3(place[3]), 1), glm::vec4(glm::normalize(glm::vec3(-place[2])), outer),
+            glm::vec4(light.color, 1 / std::max(inner - outer, 1e-4f)), glm::vec4(light.attenuation, 0)};
     }
     shadows.describe(view);
 }
@@ -185,7 +184,8 @@ void SceneRenderer::State::draw_one(const Draw& draw) const {
                              reinterpret_cast<const void*>(draw.part->first_index), draw.part->base_vertex);
 }
 
-/// Depth of everything opaque first: geometry costs little beside light, and so light is reckoned once per pixel.
+/// Depth of everything opaque first: geometry costs little beside light, and so light is reckoned once per
+/// pixel.
 void SceneRenderer::State::draw_depth() {
     glUseProgram(depth_program.name());
     glBindVertexArray(buffers.vertex_array());

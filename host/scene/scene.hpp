@@ -88,7 +88,7 @@ struct Light {
     float inner_angle = 20;         ///< degrees from the axis: full light inside
     float outer_angle = 30;         ///< degrees from the axis: none outside
     bool casts_shadow = false;      ///< directional and spot
-    float shadow_softness = 0.75f; ///< half width of the shadow's filter, texels of its map
+    float shadow_softness = 0.75f;  ///< half width of the shadow's filter, texels of its map
     /// Directional: metres around the middle of the view that shadows cover.
     float shadow_extent = 40;
 };

@@ -88,7 +88,8 @@ std::string light_calls(const std::vector<LightCode>& lights) {
             text += fmt::format("        strength *= scene_shadow({}, surface.normal, to_light);\n",
                                 lights[i].shadow_layer);
         }
-        text += "        sum += scene_reflect(light.color.rgb * strength, surface, to_light, to_eye);\n    }\n";
+        text +=
+            "        sum += scene_reflect(light.color.rgb * strength, surface, to_light, to_eye);\n    }\n";
     }
     return text + "    return sum;\n}\n";
 }
@@ -127,7 +128,8 @@ gl::Program link(const ShaderText& vertex, const ShaderText& fragment, const std
 
 } // namespace
 
-gl::Program make_mesh_program(const OutputNames& outputs, bool textured, const std::vector<LightCode>& lights) {
+gl::Program make_mesh_program(const OutputNames& outputs, bool textured,
+                              const std::vector<LightCode>& lights) {
     ShaderText fragment;
     fragment.file("view.glsl").file("material.glsl");
     fragment.file(textured ? "surface_textured.glsl" : "surface_plain.glsl");
@@ -137,12 +139,13 @@ gl::Program make_mesh_program(const OutputNames& outputs, bool textured, const s
 }
 
 gl::Program make_depth_program() {
-    return link(ShaderText().file("view.glsl").file("mesh.vert.glsl"), ShaderText().file("depth_only.frag.glsl"),
-                "scene depth");
+    return link(ShaderText().file("view.glsl").file("mesh.vert.glsl"),
+                ShaderText().file("depth_only.frag.glsl"), "scene depth");
 }
 
 gl::Program make_shadow_program() {
-    return link(ShaderText().file("shadow.vert.glsl"), ShaderText().file("depth_only.frag.glsl"), "scene shadow");
+    return link(ShaderText().file("shadow.vert.glsl"), ShaderText().file("depth_only.frag.glsl"),
+                "scene shadow");
 }
 
 gl::Program make_sky_program() {

@@ -21,8 +21,10 @@ struct LightCode {
     int shadow_layer = -1; ///< -1: casts none
 };
 
-/// One call per light, rather than a loop over all kinds: software rasterizers run every branch of a loop's body.
-gl::Program make_mesh_program(const OutputNames& outputs, bool textured, const std::vector<LightCode>& lights);
+/// One call per light, rather than a loop over all kinds: software rasterizers run every branch of a loop's
+/// body.
+gl::Program make_mesh_program(const OutputNames& outputs, bool textured,
+                              const std::vector<LightCode>& lights);
 /// Only depth, at exactly the same depth as make_mesh_program.
 gl::Program make_depth_program();
 gl::Program make_shadow_program();

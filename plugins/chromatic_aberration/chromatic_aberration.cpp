@@ -16,8 +16,8 @@ constexpr postfx::Parameter parameters[] = {
 // Wavelengths in micrometres at which the three channels are most sensitive.
 constexpr double red_peak = 0.612, green_peak = 0.549, blue_peak = 0.464;
 
-/// The part of a refractive index that depends on the wavelength, up to a factor (Cauchy: n = A + B /
-/// wavelength^2).
+/// The part of a refractive index that depends on the wavelength, up to a factor: Cauchy's
+/// n = A + B / wavelength^2.
 constexpr double dispersion(double wavelength) {
     return 1 / (wavelength * wavelength);
 }
@@ -33,8 +33,8 @@ void plan(const postfx::Request& in, postfx::Builder& out) {
     const double spread = dispersion(blue_peak) - dispersion(red_peak);
     const double red = strength * (dispersion(red_peak) - dispersion(green_peak)) / spread;
     const double blue = strength * (dispersion(blue_peak) - dispersion(green_peak)) / spread;
-    // From heights in the corner to a share of the radius. At least half a height is 1 radius: |share| < 0.1,
-    // so the picture can't be turned inside out.
+    // From heights in the corner to a share of the radius. The corner is at least half a height away, so no
+    // share exceeds 0.1 and the picture can't be turned inside out.
     const double corner = 0.5 * std::hypot(1.0, double(in.width()) / in.height());
     out.compose("chromatic_aberration.glsl")
         .reads("picture", out.color(), "linear")

@@ -73,7 +73,7 @@ constexpr double rounding = 1e-5;
 TEST_CASE("the picture is the float64 reference's") {
     const std::pair<int, int> sizes[] = {{1, 1}, {1, 50}, {50, 1}, {300, 31}, {96, 64}, {131, 177}};
     const double largest =
-        0.9; // of the circle at infinity: so near that circles are 9 times as large, and farther
+        0.9; // of the circle at infinity; what a scene puts beyond it is brought back there
     const std::function<double(int, int)> scenes[] = {
         [](int x, int y) { return distance_with(0.05 * x - 0.03 * y - 1.013); }, // a slope through the focus
         [](int x, int y) {
@@ -100,6 +100,17 @@ TEST_CASE("the picture is the float64 reference's") {
             }
         }
     }
+}
+
+TEST_CASE("the picture is the reference's for an orthographic camera") {
+    const Camera camera = Camera::parallel(6, 0.1, 100);
+    const auto scene = [](int x, int y) { return x < 5 ? double(infinity) : 0.5 + 0.11 * x + 0.013 * y; };
+    const Input input{.color = noise(96, 80, -1, 8),
+                      .attachments = {{"depth", depth_of(96, 80, camera, scene)}},
+                      .camera = camera};
+    const Values values = {
+        {"focus_distance", 5}, {"focal_length", 500}, {"f_number", 0.5}, {"max_circle_of_confusion", 0.1}};
+    CHECK(against_reference(input, values).absolute <= 8 * rounding);
 }
 
 TEST_CASE("circles are those of the thin lens from the near plane to infinity") {

@@ -26,8 +26,8 @@ void plan(const postfx::Request& in, postfx::Builder& out) {
     const bool clumps = size > 1;
     // A pixel that holds many grains averages them: deviation times sqrt(area) is constant (Selwyn's law).
     const double sigma = in.number("amount") * std::min(1.0, size);
-    // channel = own * its field + joint * the sum of the three fields: variance (own + joint)^2 + 2 joint^2 =
-    // 1 and correlation of two channels 1 - own^2 = 1 - color.
+    // A channel is own * its field + joint * the sum of the three: its variance, (own + joint)^2 + 2 joint^2,
+    // is to be 1; two channels then correlate by 1 - own^2, which is to be 1 - color.
     const double own = std::sqrt(in.number("color"));
     const double joint = (std::sqrt(3 - 2 * own * own) - own) / 3;
     // The triangular lattice has edges of sqrt(2/3) in its own unit.

@@ -22,3 +22,9 @@ layout(std140, binding = 0) uniform PostfxFrame {
     uint seed;
     mat4 view_to_world;   // the camera looks down -z of its own space
 } u_frame;
+
+// A pixel of the chain's stored colour. Here, before any effect's text, so that no effect can replace the texelFetch
+// that it uses (GLSL lets a shader redefine built-in functions).
+vec4 postfx_stored(sampler2D picture, ivec2 index) {
+    return texelFetch(picture, index, 0);
+}

@@ -4,7 +4,10 @@
 namespace {
 
 constexpr postfx::Parameter parameters[] = {
-    postfx::number("amount", 0.5).range(0, 1).identity_at(0).about("0: colours as they are, 1: shades of the tint"),
+    postfx::number("amount", 0.5)
+        .range(0, 1)
+        .identity_at(0)
+        .about("0: colours as they are, 1: shades of the tint"),
     postfx::color("tint", 1, 0.75, 0.5).range(0, 1).about("Colour that a white pixel gets at amount 1"),
 };
 

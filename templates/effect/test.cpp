@@ -38,13 +38,15 @@ TEST_CASE("my_effect at its identity changes no bit") {
 TEST_CASE("my_effect keeps finite pixels finite") {
     const float value = GENERATE(0.0f, -0.5f, 1e-42f, 65504.0f, -65504.0f);
     const double amount = GENERATE(0.5, 1.0);
-    const Image result = run_effect("my_effect", input_of(constant(5, 3, {value, 0.25f, value})), {{"amount", amount}});
+    const Image result =
+        run_effect("my_effect", input_of(constant(5, 3, {value, 0.25f, value})), {{"amount", amount}});
     for (float channel : result.values)
         CHECK(std::isfinite(channel));
 }
 
 TEST_CASE("my_effect does not spread a pixel that is not finite") {
-    const float value = GENERATE(std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity());
+    const float value =
+        GENERATE(std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity());
     const Input clean = input_of(noise(8, 8, 0.0f, 1.0f));
     Input hostile = clean;
     hostile.color.at(3, 4, 1) = value;

@@ -62,7 +62,6 @@ ReferenceInput reference_input(const std::string& effect, const Input& input, co
 Image64 reference(const ReferenceInput& input);
 
 // ---- pictures to test on
-// -------------------------------------------------------------------------------------------
 
 Image constant(int width, int height, std::vector<float> value);
 /// Reproducible noise in [low, high], 3 channels.
@@ -71,7 +70,6 @@ Image noise(int width, int height, float low, float high, std::uint32_t seed = 1
 Image impulse(int width, int height, int x, int y, float value);
 
 // ---- comparing
-// -----------------------------------------------------------------------------------------------------
 
 struct Worst {
     double absolute = 0; ///< largest |a - b|

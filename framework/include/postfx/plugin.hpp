@@ -37,7 +37,6 @@
 namespace postfx {
 
 // ---- declaring parameters
-// ------------------------------------------------------------------------------------------
 
 /// A postfx_parameter under construction; every call returns a changed copy.
 struct Parameter : postfx_parameter {
@@ -128,7 +127,6 @@ constexpr postfx_level level(const char* id, const char* help) {
 }
 
 // ---- planning
-// ------------------------------------------------------------------------------------------------------
 
 /// What the host asks: values, size, camera, what is there. Valid during plan().
 class Request {
@@ -346,7 +344,6 @@ private:
 };
 
 // ---- declaring the effect
-// ------------------------------------------------------------------------------------------
 
 /// A postfx_effect under construction; every call returns a changed copy.
 struct Effect : postfx_effect {

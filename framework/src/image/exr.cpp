@@ -86,20 +86,24 @@ public:
         const Imf::Header& header = input_.header(0);
         return Imf::hasMultiView(header) ? Imf::multiView(header) : std::vector<std::string>{};
     }
-    /// The display window, with those channels; 0 where the file has nothing.
-    Image read(const std::vector<std::string>& names) {
-        Image image(static_cast<int>(display_.width), static_cast<int>(display_.height),
-                    static_cast<int>(names.size()));
-        for (int part = 0; part < input_.parts(); ++part) {
-            std::vector<Wanted> wanted;
+    /// The display window, once for each list of channels; 0 where the file has nothing. All in one go, because the
+    /// library unpacks all channels of a row together.
+    std::vector<Image> read(const std::vector<std::vector<std::string>>& lists) {
+        std::vector<Image> images;
+        std::vector<std::vector<Wanted>> wanted(static_cast<std::size_t>(input_.parts()));
+        for (const std::vector<std::string>& names : lists) {
             for (std::size_t i = 0; i < names.size(); ++i)
-                if (const auto found = sources_.find(names[i]);
-                    found != sources_.end() && found->second.part == part)
-                    wanted.push_back({found->second.channel, static_cast<int>(i)});
-            if (!wanted.empty()) read_part(part, wanted, image);
+                if (const auto found = sources_.find(names[i]); found != sources_.end())
+                    wanted[found->second.part].push_back(
+                        {found->second.channel, images.size(), static_cast<int>(i)});
+            images.emplace_back(static_cast<int>(display_.width), static_cast<int>(display_.height),
+                                static_cast<int>(names.size()));
         }
-        return image;
+        for (int part = 0; part < input_.parts(); ++part)
+            if (!wanted[part].empty()) read_part(part, wanted[part], images);
+        return images;
     }
+    Image read(const std::vector<std::string>& names) { return std::move(read(std::vector{names}).front()); }
 
 private:
     struct Source {
@@ -107,8 +111,9 @@ private:
         std::string channel; ///< its name in the part
     };
     struct Wanted {
-        std::string channel; ///< its name in the part
-        int index = 0;       ///< which channel of the image it becomes
+        std::string channel;   ///< its name in the part
+        std::size_t image = 0; ///< which image it belongs to
+        int index = 0;         ///< which channel of that image it becomes
     };
 
     void add_part(int part) {
@@ -137,7 +142,7 @@ private:
         return header.hasName() ? header.name() : fmt::format("part{}", part + 1);
     }
 
-    void read_part(int part, const std::vector<Wanted>& wanted, Image& image) {
+    void read_part(int part, const std::vector<Wanted>& wanted, std::vector<Image>& images) {
         const Imath::Box2i& box = input_.header(part).dataWindow();
         const Window data = window_of(box);
         Image pixels(static_cast<int>(data.width), static_cast<int>(data.height),
@@ -159,10 +164,10 @@ private:
         for (long long y = y_begin; y < y_end; ++y)
             for (long long x = x_begin; x < x_end; ++x) {
                 const float* from = pixels.pixel(static_cast<int>(x - data.x), static_cast<int>(y - data.y));
-                float* to = image.pixel(static_cast<int>(x - display_.x),
-                                        static_cast<int>(display_.height - 1 - (y - display_.y)));
-                for (std::size_t i = 0; i < wanted.size(); ++i)
-                    to[wanted[i].index] = from[i];
+                const int to_x = static_cast<int>(x - display_.x);
+                const int to_y = static_cast<int>(display_.height - 1 - (y - display_.y));
+                for (const Wanted& channel : wanted)
+                    images[channel.image].at(to_x, to_y, channel.index) = *from++;
             }
     }
 
@@ -189,10 +194,16 @@ ExrLayers read_exr(const Path& file, const std::string& bytes) {
         const auto* main = main_layer(layers, exr.views());
         if (!main)
             fail(file, fmt::format("has no colour; its channels are {}", fmt::join(exr.names(), ", ")));
-        ExrLayers read;
-        read.image = exr.read(main->second);
+        std::vector<std::vector<std::string>> lists = {main->second};
         for (const auto& layer : layers)
-            if (&layer != main) read.layers[layer.first] = exr.read(layer.second);
+            if (&layer != main) lists.push_back(layer.second);
+        std::vector<Image> images = exr.read(lists);
+
+        ExrLayers read;
+        auto next = images.begin();
+        read.image = std::move(*next++);
+        for (const auto& layer : layers)
+            if (&layer != main) read.layers[layer.first] = std::move(*next++);
         return read;
     });
 }

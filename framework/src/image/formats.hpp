@@ -41,7 +41,6 @@ BasicImage<Number> upside_down(const BasicImage<Number>& image) {
 }
 
 // ---- PNG and JPEG
-// --------------------------------------------------------------------------------------------------
 
 enum class Meaning {
     light, ///< sRGB-decoded; alpha is not
@@ -58,7 +57,6 @@ CodedImage read_png_or_jpeg(const Path& file, std::string_view bytes, Meaning me
 std::string png_bytes(const Path& file, const BasicImage<std::uint8_t>& codes);
 
 // ---- Radiance HDR
-// --------------------------------------------------------------------------------------------------
 
 bool is_hdr(std::string_view bytes);
 Image read_hdr(const Path& file, std::string_view bytes);
@@ -67,7 +65,6 @@ Image read_hdr(const Path& file, std::string_view bytes);
 std::string hdr_bytes(const Image& rgb);
 
 // ---- PFM
-// -----------------------------------------------------------------------------------------------------------
 
 bool is_pfm(std::string_view bytes);
 /// 1 or 3 channels, either byte order, bits kept. The magnitude of the scale, which most writers leave at 1
@@ -77,7 +74,6 @@ Image read_pfm(const Path& file, std::string_view bytes);
 std::string pfm_bytes(const Image& image);
 
 // ---- OpenEXR
-// -------------------------------------------------------------------------------------------------------
 
 bool is_exr(std::string_view bytes);
 struct ExrLayers {

@@ -22,37 +22,57 @@
 namespace postfx::formats {
 namespace {
 
+std::size_t byte_at(std::string_view bytes, std::size_t at) {
+    return static_cast<std::uint8_t>(bytes[at]);
+}
+
 /// The size in a PNG's first chunk; stb_image calls a file with an absurd one no image at all.
 void check_png_size(const Path& file, std::string_view bytes) {
     const auto number_at = [&](std::size_t at) {
         long long number = 0;
         for (std::size_t i = at; i < at + 4; ++i)
-            number = number << 8 | static_cast<std::uint8_t>(bytes[i]);
+            number = number << 8 | static_cast<long long>(byte_at(bytes, i));
         return number;
     };
     if (bytes.size() >= 24) check_size(file, number_at(16), number_at(20));
 }
 
-/// Is the end-of-image marker there? stb_image paints what is missing grey and says nothing.
-bool jpeg_is_whole(std::string_view bytes) {
-    const auto byte = [&](std::size_t i) { return static_cast<std::uint8_t>(bytes[i]); };
+/// Do the Huffman tables of a DHT segment (without its length) have at most 256 codes each? stb_image 2.27
+/// writes past its arrays for more.
+bool huffman_tables_good(std::string_view segment) {
+    while (segment.size() >= 17) {
+        std::size_t codes = 0;
+        for (std::size_t i = 1; i <= 16; ++i)
+            codes += byte_at(segment, i);
+        if (codes > 256) return false;
+        segment.remove_prefix(std::min(segment.size(), 17 + codes));
+    }
+    return segment.empty();
+}
+
+/// Throws Error for what stb_image gets wrong: it paints what a truncated file lacks grey and says nothing.
+void check_jpeg_segments(const Path& file, std::string_view bytes) {
     for (std::size_t at = 2; at + 1 < bytes.size();) {
-        // Between markers is entropy-coded data, in which 0xff stands before 0, a restart marker or a fill
+        // Between segments is entropy-coded data, in which 0xff stands before 0, a restart marker or a fill
         // byte only.
-        const std::uint8_t marker = byte(at + 1);
-        const bool is_marker =
-            byte(at) == 0xff && marker != 0 && marker != 0xff && (marker < 0xd0 || marker > 0xd7);
-        if (!is_marker) {
+        const std::size_t marker = byte_at(bytes, at + 1);
+        const bool in_data =
+            byte_at(bytes, at) != 0xff || marker == 0 || marker == 0xff || (marker & ~7u) == 0xd0;
+        if (in_data) {
             ++at;
             continue;
         }
-        if (marker == 0xd9) return true;
-        if (at + 3 >= bytes.size()) return false;
-        at += 2
-              + (std::size_t{byte(at + 2)} << 8
-                 | byte(at + 3)); // a segment may hold a thumbnail with an end of its own
+        if (marker == 0xd9) return;
+        if (at + 4 > bytes.size()) break;
+        // The length counts itself. Skipping by it matters: a segment may hold a thumbnail with an end of its
+        // own.
+        const std::size_t length = byte_at(bytes, at + 2) << 8 | byte_at(bytes, at + 3);
+        if (length < 2) fail(file, "damaged JPEG: a segment shorter than its own length");
+        if (marker == 0xc4 && !huffman_tables_good(bytes.substr(at + 4, length - 2)))
+            fail(file, "truncated or damaged JPEG: a Huffman table of the wrong size");
+        at += 2 + length;
     }
-    return false;
+    fail(file, "truncated JPEG: its end marker is missing");
 }
 
 /// Scene value of every code.
@@ -102,11 +122,13 @@ CodedImage read_png_or_jpeg(const Path& file, std::string_view bytes, Meaning me
     const auto check = [&](bool good) {
         if (!good) fail(file, fmt::format("truncated or damaged {} ({})", kind, stbi_failure_reason()));
     };
-    if (is_png(bytes)) check_png_size(file, bytes);
+    if (is_png(bytes))
+        check_png_size(file, bytes);
+    else
+        check_jpeg_segments(file, bytes);
     int width = 0, height = 0, channels = 0;
     check(stbi_info_from_memory(data, size, &width, &height, &channels) != 0);
     check_size(file, width, height);
-    if (is_jpeg(bytes) && !jpeg_is_whole(bytes)) fail(file, "truncated JPEG: its end marker is missing");
 
     if (stbi_is_16_bit_from_memory(data, size)) {
         const std::unique_ptr<stbi_us, FreeCodes> codes(

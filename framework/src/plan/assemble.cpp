@@ -42,7 +42,7 @@ std::string struct_name(const Stage& stage) {
 /// A GLSL literal that reads back as the same float.
 std::string literal(double value, bool integer) {
     if (integer) return fmt::format("{}", static_cast<long long>(value));
-    std::string text = fmt::format("{:.9g}", value);
+    std::string text = fmt::format("{:.9g}", static_cast<float>(value));
     if (text.find_first_of(".en") == text.npos) text += ".0";
     return text;
 }
@@ -116,7 +116,7 @@ private:
             const std::string_view row = glsl.substr(at, end - at);
             at = end + 1;
             if (row.find("#include") == row.find_first_not_of(" \t") && row.find("#include") != row.npos) {
-                include(row, Place{.file = name, .line = line}, effect);
+                include(row, Place{.file = name, .line = line, .effect = effect ? effect->id : ""}, effect);
                 program_.text += fmt::format("#line {} {}\n", line + 1, file);
             } else {
                 program_.text.append(row).push_back('\n');
@@ -137,7 +137,8 @@ private:
         if (!source)
             throw Error(place, fmt::format("#include of \"{}\", which the plugin does not have", name));
         if (!source->not_pointwise.empty()) {
-            throw Error(Place{.file = name}, fmt::format("can't be included: {}", source->not_pointwise));
+            throw Error(Place{.file = name, .effect = effect->id},
+                        fmt::format("can't be included: {}", source->not_pointwise));
         }
         text(source->name, source->text, effect);
     }
@@ -179,10 +180,10 @@ std::string arguments(const std::vector<Stage>& stages, std::size_t i) {
     return text;
 }
 
-constexpr std::string_view main_start =
-    "void main() {\n"
-    "    Pixel pixel = Pixel(ivec2(gl_FragCoord.xy), gl_FragCoord.xy, gl_FragCoord.xy * u_stages.target.zw,\n"
-    "                        ivec2(u_stages.target.xy));\n";
+constexpr std::string_view main_start = "void main() {\n"
+                                        "    const Pixel pixel = Pixel(ivec2(gl_FragCoord.xy), "
+                                        "gl_FragCoord.xy, gl_FragCoord.xy * u_stages.target.zw,\n"
+                                        "                              ivec2(u_stages.target.xy));\n";
 
 /// Writes numbers where std140 wants them.
 class Std140 {
@@ -202,6 +203,13 @@ public:
                 append(static_cast<float>(member.value[i]));
             }
         }
+    }
+
+    void structure(const Stage& stage) {
+        align(16);
+        for (const BlockMember& value : stage.members)
+            member(value);
+        if (stage.members.empty()) member({"postfx_no_parameters", "float", {}, 1});
     }
 
     std::vector<std::byte> finish() {
@@ -268,6 +276,9 @@ Stage make_stage(const ChainEntry& entry, const RecordedPass& pass) {
 }
 
 std::string why_not_together(const Stage& a, const Stage& b) {
+    if (a.source != b.source && a.function() == b.function()) {
+        return fmt::format("{} and {} both define the function {}", a.entry, b.entry, a.function());
+    }
     if (a.source == b.source && a.members != b.members) {
         return fmt::format("{} and {} use one function with different values", a.entry, b.entry);
     }
@@ -275,7 +286,8 @@ std::string why_not_together(const Stage& a, const Stage& b) {
         const auto same =
             std::find_if(b.constants.begin(), b.constants.end(),
                          [&](const RecordedNumber& other) { return other.name == constant.name; });
-        if (same != b.constants.end() && same->value != constant.value) {
+        if (same != b.constants.end()
+            && (same->value != constant.value || same->integer != constant.integer)) {
             return fmt::format("{} and {} are compiled with different {}", a.entry, b.entry, constant.name);
         }
     }
@@ -294,7 +306,7 @@ ProgramSource assemble_compose(const std::vector<Stage>& stages, Encoding encodi
     assembly.generated("layout(location = 0) out vec4 o_color;\n");
     assembly.generated(main_start);
     assembly.generated(
-        "    vec4 stored = texelFetch(u_color, pixel.index, 0);\n    vec3 color = stored.rgb;\n");
+        "    vec4 stored = postfx_stored(u_color, pixel.index);\n    vec3 color = stored.rgb;\n");
     for (std::size_t i = 0; i < stages.size(); ++i) {
         assembly.generated(
             fmt::format("    color = {}(color, {});\n", stages[i].function(), arguments(stages, i)));
@@ -343,13 +355,15 @@ std::string program_key(const std::vector<Stage>& stages, std::string_view form)
 std::vector<std::byte> uniform_block(const std::vector<Stage>& stages, int width, int height) {
     Std140 block;
     block.member({"target", "vec4", {double(width), double(height), 1.0 / width, 1.0 / height}, 4});
-    for (const Stage& stage : stages) {
-        block.align(16);
-        for (const BlockMember& member : stage.members)
-            block.member(member);
-        if (stage.members.empty()) block.member({"postfx_no_parameters", "float", {}, 1});
-    }
+    for (const Stage& stage : stages)
+        block.structure(stage);
     return block.finish();
+}
+
+std::size_t struct_bytes(const Stage& stage) {
+    Std140 block;
+    block.structure(stage);
+    return block.finish().size();
 }
 
 } // namespace postfx

@@ -54,6 +54,10 @@ ProgramSource assemble_fragment(const Stage& stage, int outputs);
 /// Names everything that is compiled in, so that equal keys have equal programs.
 std::string program_key(const std::vector<Stage>& stages, std::string_view form);
 
+/// Size of the uniform block without its structs, and of one stage's struct; both multiples of 16.
+inline constexpr std::size_t block_head_bytes = 16;
+std::size_t struct_bytes(const Stage& stage);
+
 /// std140 bytes of the block that both programs declare at binding 1: target size, then one struct per stage.
 std::vector<std::byte> uniform_block(const std::vector<Stage>& stages, int width, int height);
 

@@ -14,7 +14,7 @@
 namespace postfx {
 namespace {
 
-constexpr std::size_t most_inputs = 16; // GL 4.5 promises as many texture units to a fragment shader
+constexpr std::size_t most_uniform_bytes = 16384; // of a block; GL 4.5 promises no more
 
 const ImageRef nothing{};
 
@@ -23,13 +23,20 @@ struct WaitingStage {
     Stage stage;
     std::vector<PassInput> inputs;
     std::size_t effect = 0; ///< into Plan::effects
+    std::size_t bytes = 0;  ///< of its parameter struct
 };
 
 /// Walks along the chain once. `stored_` is the picture so far; `waiting_` are functions of its pixels that
 /// were not drawn yet, because those after them may join them in one pass.
 class Walk {
 public:
-    using Programs = std::unordered_map<std::string, std::shared_ptr<const ProgramSource>>;
+    /// A program by what it is made of. Its effects are kept, so that their addresses, which are part of the
+    /// key, are not given to others.
+    struct KnownProgram {
+        std::shared_ptr<const ProgramSource> source;
+        std::vector<EffectPtr> effects;
+    };
+    using Programs = std::unordered_map<std::string, KnownProgram>;
 
     Walk(const Facts& facts, Programs& programs) : facts_(facts), programs_(programs) {
         plan_.width = facts.width;
@@ -89,7 +96,9 @@ private:
                 inputs.push_back({input.name, resolve(recording.images[input.image], outputs), input.linear});
             }
             if (pass.compose) {
-                wait({make_stage(entry, pass), std::move(inputs), plan_.effects.size() - 1});
+                Stage stage = make_stage(entry, pass);
+                const std::size_t bytes = struct_bytes(stage);
+                wait({std::move(stage), std::move(inputs), plan_.effects.size() - 1, bytes});
             } else {
                 outputs.push_back(add_fragment_pass(entry, pass, std::move(inputs)));
             }
@@ -133,13 +142,19 @@ private:
     void wait(WaitingStage stage) {
         std::string apart = facts_.fuse || waiting_.empty() ? "" : "fusion is off";
         std::size_t inputs = 1 + stage.inputs.size();
+        std::size_t bytes = block_head_bytes + stage.bytes;
         for (const WaitingStage& other : waiting_) {
             if (apart.empty()) apart = why_not_together(other.stage, stage.stage);
             inputs += other.inputs.size();
+            bytes += other.bytes;
         }
-        if (apart.empty() && inputs > most_inputs) {
+        if (apart.empty() && inputs > most_pass_inputs) {
             apart = fmt::format("{} would need {} textures in one pass, {} are sure", stage.stage.entry,
-                                inputs, most_inputs);
+                                inputs, most_pass_inputs);
+        }
+        if (apart.empty() && bytes > most_uniform_bytes) {
+            apart = fmt::format("{} would need {} bytes of uniforms in one pass, {} are sure",
+                                stage.stage.entry, bytes, most_uniform_bytes);
         }
         if (!apart.empty() && !waiting_.empty()) flush(Encoding::none, apart);
         waiting_.push_back(std::move(stage));
@@ -188,9 +203,13 @@ private:
     template<class Make>
     std::shared_ptr<const ProgramSource> program(const std::vector<Stage>& stages, const std::string& form,
                                                  Make make) {
-        std::shared_ptr<const ProgramSource>& found = programs_[program_key(stages, form)];
-        if (!found) found = std::make_shared<const ProgramSource>(make());
-        return found;
+        KnownProgram& found = programs_[program_key(stages, form)];
+        if (!found.source) {
+            found.source = std::make_shared<const ProgramSource>(make());
+            for (const Stage& stage : stages)
+                found.effects.push_back(stage.effect);
+        }
+        return found.source;
     }
 
     Encoding final_encoding() const {

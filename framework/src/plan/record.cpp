@@ -7,12 +7,27 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <functional>
+#include <limits>
 
 namespace postfx {
 namespace {
 
 constexpr int largest_side = 16384;
+constexpr std::array moments = {"configuration", "scene"};
+constexpr std::array identity_kinds = {"exact", "code", "visible"};
+
+/// A word that a plugin may have left out.
+std::string_view word_of(const char* text) {
+    return text ? text : "";
+}
+
+template<std::size_t count>
+bool is_one_of(std::string_view word, const std::array<const char*, count>& words) {
+    return std::find(words.begin(), words.end(), word) != words.end();
+}
 
 /// Thrown between record()'s own functions only; never crosses the plugin.
 struct Wrong {
@@ -58,10 +73,11 @@ private:
     }
 
     static void on_identity(void* context, const char* moment, const char* kind, const char* reason) {
-        self(context).guarded([&] { self(context).recording_.identity = Identity{moment, kind, reason}; });
+        self(context).guarded(
+            [&] { self(context).identity(word_of(moment), word_of(kind), word_of(reason)); });
     }
     static void on_refuse(void* context, const char* message) {
-        self(context).guarded([&] { throw Wrong{message}; });
+        self(context).guarded([&] { throw Wrong{std::string(word_of(message))}; });
     }
     static postfx_image on_color(void* context) {
         postfx_image handle = 0;
@@ -70,7 +86,7 @@ private:
     }
     static postfx_image on_attachment(void* context, const char* name) {
         postfx_image handle = 0;
-        self(context).guarded([&] { handle = self(context).attachment(name); });
+        self(context).guarded([&] { handle = self(context).attachment(std::string(word_of(name))); });
         return handle;
     }
     static postfx_image on_pass(void* context, const postfx_pass* pass) {
@@ -85,6 +101,16 @@ private:
             *width = static_cast<std::uint32_t>(found.width);
             *height = static_cast<std::uint32_t>(found.height);
         });
+    }
+
+    void identity(std::string_view moment, std::string_view kind, std::string_view reason) {
+        if (!is_one_of(moment, moments)) {
+            throw Wrong{fmt::format("is the identity at the unknown moment \"{}\"", moment)};
+        }
+        if (!is_one_of(kind, identity_kinds)) {
+            throw Wrong{fmt::format("is an identity of the unknown kind \"{}\"", kind)};
+        }
+        recording_.identity = Identity{std::string(moment), std::string(kind), std::string(reason)};
     }
 
     postfx_image add_image(RecordedImage image) {
@@ -122,19 +148,19 @@ private:
 
     postfx_image pass(const postfx_pass& declared) {
         RecordedPass pass;
-        pass.name = declared.name;
-        pass.compose = declared.kind == std::string_view("compose");
-        if (!pass.compose && declared.kind != std::string_view("fragment")) {
-            throw Wrong{fmt::format("pass {} has the unknown kind \"{}\"", pass.name, declared.kind)};
+        pass.name = word_of(declared.name);
+        const std::string_view kind = word_of(declared.kind), source = word_of(declared.source);
+        pass.compose = kind == "compose";
+        if (!pass.compose && kind != "fragment") {
+            throw Wrong{fmt::format("pass {} has the unknown kind \"{}\"", pass.name, kind)};
         }
         if (!recording_.passes.empty() && recording_.passes.back().compose) {
             throw Wrong{fmt::format("declares pass {} after compose()", pass.name)};
         }
-        pass.source = entry_.effect->find_source(declared.source);
-        if (!pass.source)
-            throw Wrong{fmt::format("has no source \"{}\" (pass {})", declared.source, pass.name)};
+        pass.source = entry_.effect->find_source(source);
+        if (!pass.source) throw Wrong{fmt::format("has no source \"{}\" (pass {})", source, pass.name)};
         if (pass.compose && !pass.source->not_pointwise.empty()) {
-            throw Wrong{fmt::format("{} can't be composed: {}", declared.source, pass.source->not_pointwise)};
+            throw Wrong{fmt::format("{} can't be composed: {}", source, pass.source->not_pointwise)};
         }
         pass.width = static_cast<int>(declared.width);
         pass.height = static_cast<int>(declared.height);
@@ -142,6 +168,12 @@ private:
             || declared.height > largest_side) {
             throw Wrong{
                 fmt::format("pass {} wants {}x{} pixels", pass.name, declared.width, declared.height)};
+        }
+        // A compose function's pass has the chain's colour besides.
+        const std::size_t most = pass.compose ? most_pass_inputs - 1 : most_pass_inputs;
+        if (declared.input_count > most) {
+            throw Wrong{
+                fmt::format("pass {} reads {} textures, {} are sure", pass.name, declared.input_count, most)};
         }
         for (std::uint32_t i = 0; i < declared.input_count; ++i) {
             pass.inputs.push_back(input(abi_element(declared.inputs, declared.input_stride, i), pass.name));
@@ -152,12 +184,17 @@ private:
         for (std::uint32_t i = 0; i < declared.constant_count; ++i) {
             pass.constants.push_back(
                 number(abi_element(declared.constants, declared.constant_stride, i), pass.name));
+            const RecordedNumber& constant = pass.constants.back();
+            if (!std::isfinite(constant.value[0])) {
+                throw Wrong{fmt::format("pass {}: the constant {} is {}", pass.name, constant.name,
+                                        constant.value[0])};
+            }
         }
         if (declared.output_count < 1 || declared.output_count > 8) {
             throw Wrong{fmt::format("pass {} has {} outputs", pass.name, declared.output_count)};
         }
         for (std::uint32_t i = 0; i < declared.output_count; ++i) {
-            pass.formats.push_back(format(declared.formats[i], pass.name));
+            pass.formats.push_back(format(word_of(declared.formats[i]), pass.name));
         }
         return add_pass(std::move(pass));
     }
@@ -175,23 +212,28 @@ private:
     }
 
     RecordedInput input(const postfx_input& declared, const std::string& pass) const {
-        const std::string_view filter = declared.filter;
+        const std::string_view name = word_of(declared.name), filter = word_of(declared.filter);
         if (filter != "linear" && filter != "nearest") {
-            throw Wrong{
-                fmt::format("pass {}: {} has the unknown filter \"{}\"", pass, declared.name, filter)};
+            throw Wrong{fmt::format("pass {}: {} has the unknown filter \"{}\"", pass, name, filter)};
         }
-        return {declared.name, index(declared.image, fmt::format("pass {}: {}", pass, declared.name)),
+        return {std::string(name), index(declared.image, fmt::format("pass {}: {}", pass, name)),
                 filter == "linear"};
     }
 
     static RecordedNumber number(const postfx_number& declared, const std::string& pass) {
-        const std::string_view kind = declared.kind;
+        const std::string_view name = word_of(declared.name), kind = word_of(declared.kind);
         if ((kind != "float" && kind != "int") || declared.count < 1 || declared.count > 4) {
-            throw Wrong{fmt::format("pass {}: {} has the unknown kind \"{}\" x {}", pass, declared.name, kind,
+            throw Wrong{fmt::format("pass {}: {} has the unknown kind \"{}\" x {}", pass, name, kind,
                                     declared.count)};
         }
-        RecordedNumber number{declared.name, kind == "int", static_cast<int>(declared.count), {}};
+        RecordedNumber number{std::string(name), kind == "int", static_cast<int>(declared.count), {}};
         std::copy_n(declared.value, declared.count, number.value.begin());
+        for (double value : number.value) {
+            using Limits = std::numeric_limits<std::int32_t>;
+            if (number.integer && !(value >= Limits::min() && value <= Limits::max())) {
+                throw Wrong{fmt::format("pass {}: {} is {}, no 32-bit integer", pass, name, value)};
+            }
+        }
         return number;
     }
 

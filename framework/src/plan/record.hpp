@@ -10,6 +10,9 @@
 
 namespace postfx {
 
+/// Textures that one pass may read: GL 4.5 promises as many units to a fragment shader.
+inline constexpr std::size_t most_pass_inputs = 16;
+
 /// An image as one effect sees it. Handles of the ABI are indices into Recording::images plus 1.
 struct RecordedImage {
     enum class Kind { color, attachment, output } kind = Kind::color;

@@ -1,0 +1,57 @@
+// `postfx view` under a virtual display: it opens, draws, obeys --frames and leaves a picture.
+#include "program.hpp"
+
+#include <image/files.hpp>
+#include <image/metrics.hpp>
+
+#include <catch2/catch.hpp>
+
+#include <cstdlib>
+#include <iostream>
+#include <string>
+
+using namespace postfx;
+using namespace postfx::testing;
+
+namespace {
+
+const std::string program = std::string(POSTFX_BUILD_DIRECTORY) + "/postfx";
+
+bool can_open_windows() {
+    if (std::system("command -v xvfb-run > /dev/null 2>&1") == 0) return true;
+    std::cout << "skipped: xvfb-run is not installed (package xvfb)\n";
+    return false;
+}
+
+Outcome under_display(std::vector<std::string> command) {
+    command.insert(command.begin(), {"xvfb-run", "-a", "-s", "-screen 0 800x600x24"});
+    return run_command(command);
+}
+
+} // namespace
+
+TEST_CASE("the window shows what render writes") {
+    if (!can_open_windows()) return;
+    const Scratch scratch;
+    const std::vector<std::string> common = {"cornell", "--chain", "cinematic", "--size", "320x180"};
+    std::vector<std::string> view = {program, "view", "--frames", "1", "-o", scratch.file("view.png")};
+    std::vector<std::string> render = {program, "render", "-q", "-o", scratch.file("render.png")};
+    view.insert(view.end(), common.begin(), common.end());
+    render.insert(render.end(), common.begin(), common.end());
+    const Outcome viewed = under_display(view);
+    INFO(viewed.err);
+    REQUIRE(viewed.status == 0);
+    CHECK(viewed.out.find("F12") != std::string::npos); // the keys are told
+    REQUIRE(run_command(render).status == 0);
+    const Difference difference =
+        compare(read_image(scratch.file("view.png")).image, read_image(scratch.file("render.png")).image);
+    // The same driver, scene, time and noise; GLX may choose another visual but draws into our own targets.
+    CHECK(difference.psnr > 50);
+}
+
+TEST_CASE("without a display the window says what to do") {
+    const Outcome outcome =
+        run_command({"env", "-u", "DISPLAY", "-u", "WAYLAND_DISPLAY", program, "view", "cornell"});
+    CHECK(outcome.status == 2);
+    CHECK(outcome.err.find("postfx render") != std::string::npos);
+}
