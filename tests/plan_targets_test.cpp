@@ -1,5 +1,4 @@
 // Properties of plans over random chains: every read gets what was meant to be read, and nothing crashes.
-#define CATCH_CONFIG_MAIN
 #include <catch2/catch.hpp>
 
 #include "fixtures.hpp"
@@ -45,9 +44,13 @@ private:
 using Content = std::uint64_t;
 
 Content content(const std::string& pass, int output, const std::vector<Content>& inputs) {
-    std::string text = pass + "#" + std::to_string(output);
-    for (Content input : inputs)
-        text += "," + std::to_string(input);
+    std::string text = pass;
+    text += '#';
+    text += std::to_string(output);
+    for (Content input : inputs) {
+        text += ',';
+        text += std::to_string(input);
+    }
     return std::hash<std::string>{}(text);
 }
 

@@ -1,5 +1,4 @@
 // Decisions of the planner; no OpenGL.
-#define CATCH_CONFIG_MAIN
 #include <catch2/catch.hpp>
 
 #include "fixtures.hpp"

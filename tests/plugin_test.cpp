@@ -3,20 +3,17 @@
 
 #include "fixtures.hpp"
 
+#include <temporary_directory.hpp>
+
 #include <postfx/catalog.hpp>
 #include <postfx/chain.hpp>
 #include <postfx/error.hpp>
 #include <postfx/plugin.hpp>
 
 #include <sys/stat.h>
-#include <unistd.h>
 
-#include <algorithm>
-#include <cctype>
-#include <cstdio>
+#include <cstddef>
 #include <cstdlib>
-#include <fstream>
-#include <iterator>
 #include <limits>
 #include <string>
 #include <vector>
@@ -24,23 +21,9 @@
 namespace fs = std::filesystem;
 using postfx::Catalog;
 using postfx::testing::fixture;
+using postfx::testing::TemporaryDirectory;
 
 namespace {
-
-/// A directory of its own, gone with the test.
-class Scratch {
-public:
-    Scratch() {
-        std::string pattern = (fs::temp_directory_path() / "postfx_plugin_test_XXXXXX").string();
-        if (!::mkdtemp(pattern.data())) throw std::runtime_error("no temporary directory");
-        path_ = pattern;
-    }
-    ~Scratch() { fs::remove_all(path_); }
-    fs::path operator/(const std::string& name) const { return path_ / name; }
-
-private:
-    fs::path path_;
-};
 
 /// Plugins are looked for in `path` and nowhere else.
 class Environment {
@@ -55,7 +38,7 @@ public:
     }
 };
 
-fs::path directory_with(const Scratch& scratch, const std::string& name,
+fs::path directory_with(const TemporaryDirectory& scratch, const std::string& name,
                         const std::vector<std::string>& fixtures) {
     fs::create_directory(scratch / name);
     for (const std::string& f : fixtures)
@@ -71,11 +54,6 @@ std::string load_error(const fs::path& module) {
         return error.what();
     }
     return "";
-}
-
-std::string text_of(const fs::path& file) {
-    std::ifstream stream(file, std::ios::binary);
-    return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
 }
 
 void plan_nothing(const postfx::Request&, postfx::Builder& out) {
@@ -116,7 +94,7 @@ std::string parameter_error(const postfx_parameter& parameter) {
 // ---- discovery
 
 TEST_CASE("the plugin path is searched in order, and a found effect shadows later ones") {
-    const Scratch scratch;
+    const TemporaryDirectory scratch;
     const fs::path a = directory_with(scratch, "a", {"tint", "blur"});
     const fs::path b = directory_with(scratch, "b", {"tint", "shift"});
     const Environment environment(a.string() + ":" + b.string());
@@ -134,7 +112,7 @@ TEST_CASE("the plugin path is searched in order, and a found effect shadows late
 }
 
 TEST_CASE("unsafe entries of the plugin path are refused with a note") {
-    const Scratch scratch;
+    const TemporaryDirectory scratch;
     const fs::path good = directory_with(scratch, "good", {"tint"});
     const fs::path open = directory_with(scratch, "open", {"blur"});
     REQUIRE(::chmod(open.c_str(), 0777) == 0);
@@ -151,7 +129,7 @@ TEST_CASE("unsafe entries of the plugin path are refused with a note") {
 }
 
 TEST_CASE("the current directory is never searched") {
-    const Scratch scratch;
+    const TemporaryDirectory scratch;
     const fs::path here = directory_with(scratch, "here", {"tint"});
     const Environment environment("");
     const fs::path before = fs::current_path();
@@ -162,11 +140,11 @@ TEST_CASE("the current directory is never searched") {
 }
 
 TEST_CASE("a directory that the user names may be relative but must exist") {
-    const Scratch scratch;
+    const TemporaryDirectory scratch;
     const fs::path here = directory_with(scratch, "here", {"tint"});
     const Environment environment("");
     const fs::path before = fs::current_path();
-    fs::current_path(scratch / "");
+    fs::current_path(scratch.path());
     const Catalog found = Catalog::discover({"here"});
     fs::current_path(before);
     CHECK(found.ids() == std::vector<std::string>{"tint"});
@@ -175,11 +153,11 @@ TEST_CASE("a directory that the user names may be relative but must exist") {
 }
 
 TEST_CASE("only postfx_*.so files are opened, and one bad module does not hide the others") {
-    const Scratch scratch;
+    const TemporaryDirectory scratch;
     const fs::path mixed = directory_with(scratch, "mixed", {"tint", "wrong_major", "unknown_words"});
     fs::copy_file(fixture("blur"), mixed / "blur.so");
     fs::copy_file(fixture("blur"), mixed / "postfx_blur.so.bak");
-    std::ofstream(mixed / "postfx_text.so") << std::string(200, 'x');
+    postfx::testing::put_bytes(mixed / "postfx_text.so", std::string(200, 'x'));
     fs::create_directory(mixed / "postfx_folder.so");
     fs::create_symlink("postfx_circle.so", mixed / "postfx_circle.so");
     fs::copy_file(fixture("shift"), mixed / "postfx_open.so");
@@ -202,7 +180,7 @@ TEST_CASE("only postfx_*.so files are opened, and one bad module does not hide t
 // ---- opening
 
 TEST_CASE("a file that is no plugin of this version is refused in one line") {
-    const Scratch scratch;
+    const TemporaryDirectory scratch;
     CHECK(load_error(scratch / "absent.so") == (scratch / "absent.so").string() + ": no such plugin file");
     CHECK(load_error(fixture("wrong_major"))
           == fixture("wrong_major").string() + ": has ABI major version 2, this host speaks 1");
@@ -214,12 +192,12 @@ TEST_CASE("a file that is no plugin of this version is refused in one line") {
 }
 
 TEST_CASE("a plugin that was copied half is refused, wherever it was cut") {
-    const Scratch scratch;
-    const std::string whole = text_of(fixture("tint"));
+    const TemporaryDirectory scratch;
+    const std::string whole = postfx::testing::file_bytes(fixture("tint"));
     REQUIRE(whole.size() > 1000);
     for (std::size_t part = 0; part < 20; ++part) {
         const fs::path cut = scratch / ("cut_" + std::to_string(part) + ".so");
-        std::ofstream(cut, std::ios::binary) << whole.substr(0, whole.size() * part / 20);
+        postfx::testing::put_bytes(cut, whole.substr(0, whole.size() * part / 20));
         INFO(cut);
         CHECK(load_error(cut).starts_with(cut.string() + ": not a loadable plugin: "));
     }

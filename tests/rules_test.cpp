@@ -3,12 +3,12 @@
 
 #include "fixtures.hpp"
 
+#include <temporary_directory.hpp>
+
 #include <algorithm>
 #include <cctype>
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <sstream>
 #include <string>
 #include <string_view>
@@ -57,11 +57,6 @@ std::vector<fs::path> built_plugins() {
         }
     }
     return modules;
-}
-
-std::string text_of(const fs::path& file) {
-    std::ifstream stream(file, std::ios::binary);
-    return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
 }
 
 std::string lower(std::string text) {
@@ -118,7 +113,7 @@ TEST_CASE("framework and host name no effect") {
     for (const char* room : {"framework", "host", "shaders", "cmake", "tests/harness", "tests/fixtures"}) {
         for (const auto& entry : fs::recursive_directory_iterator(source / room)) {
             if (!entry.is_regular_file()) continue;
-            const std::string text = lower(text_of(entry.path()));
+            const std::string text = lower(postfx::testing::file_bytes(entry.path()));
             for (const std::string& effect : effects) {
                 const std::size_t at = find_name(text, effect);
                 if (at == std::string::npos) continue;

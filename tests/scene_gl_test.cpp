@@ -310,7 +310,7 @@ TEST_CASE("models of other people draw with their textures") {
                 dark += rgb(color, x, y) == glm::vec3(0);
             }
         }
-        CHECK(covered > size * size / 5); // fills a good part of the picture
+        CHECK(covered > size * size / 6); // fills a good part of the picture
         CHECK(covered < size * size * 9 / 10);
         CHECK(dark < covered / 100);
     }

@@ -129,6 +129,8 @@ TEST_CASE("a mistake in a scene file is one message with its place") {
         {"camera: {near: 1, near: 2}", "s.yaml:1:19: \"near\" stands here a second time"},
         {"paths: {a: {points: [[0, 0, 0]]}}", "s.yaml:1:21: expected 2 to 10000 points, found 1"},
         {"nodes:\n  - animate: {orbit: {}}", "s.yaml:2:22: orbit needs \"degrees_per_second\""},
+        {"nodes: [&a {light: {spot: {shadow: true}}}, *a, *a, *a, *a]",
+         "s.yaml:1:20: at most 4 lights of a scene cast shadows"},
         {"include: missing.yaml", "s.yaml:1:10: there is no scene file missing.yaml"},
         {"nodes: [", "s.yaml:1:1: end of sequence flow not found"},
     };
@@ -319,10 +321,17 @@ TEST_CASE("a Cornell box in OBJ opens with a camera that sees all of it") {
     const Bounds bounds = scene.bounds();
     CHECK(bounds.high.x == Approx(556));
     CHECK(bounds.high.y == Approx(548.8));
-    const double away = glm::length(scene.camera.position - glm::dvec3(bounds.center()));
     CHECK(scene.camera.position.z < -100); // in front of the wall that is not there
-    CHECK(away * std::sin(glm::radians(scene.camera.vertical_fov / 2))
-          > static_cast<double>(bounds.radius()) * 0.8);
+    const glm::dmat4 to_view =
+        glm::inverse(look_at_matrix(scene.camera.position, scene.camera.look_at, scene.camera.up));
+    const double tan_half = std::tan(glm::radians(scene.camera.vertical_fov / 2));
+    for (int corner = 0; corner < 8; ++corner) {
+        const glm::dvec4 seen =
+            to_view
+            * glm::dvec4(corner & 1 ? bounds.high.x : bounds.low.x, corner & 2 ? bounds.high.y : bounds.low.y,
+                         corner & 4 ? bounds.high.z : bounds.low.z, 1);
+        CHECK(std::max(std::abs(seen.x), std::abs(seen.y)) < -seen.z * tan_half); // within a square picture
+    }
     for (const Node& node : scene.nodes) {
         for (const Part& part : node.parts)
             check_sane(*part.mesh);

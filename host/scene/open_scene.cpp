@@ -48,6 +48,21 @@ glm::dvec3 opening(const Scene& scene) {
     return area > 0 ? sum / area : sum;
 }
 
+/// How far from the middle of the box, towards `from`, a square picture of that field of view holds all of it.
+double fitting_distance(const Bounds& bounds, glm::dvec3 from, double vertical_fov) {
+    const glm::dmat4 view = look_at_matrix(from, glm::dvec3(0), {0, 1, 0});
+    const glm::dvec3 right(view[0]), up(view[1]), half(0.5f * (bounds.high - bounds.low));
+    const double tan_half = std::tan(glm::radians(vertical_fov / 2));
+    double distance = 0;
+    for (int corner = 0; corner < 8; ++corner) {
+        const glm::dvec3 place =
+            half * glm::dvec3(corner & 1 ? 1 : -1, corner & 2 ? 1 : -1, corner & 4 ? 1 : -1);
+        const double away = std::max(std::abs(glm::dot(place, right)), std::abs(glm::dot(place, up)));
+        distance = std::max(distance, glm::dot(place, from) + 1.08 * away / tan_half); // with a margin
+    }
+    return distance;
+}
+
 /// A model alone, in front of grey: seen a little from above and the side and lit from the front left; or, when it is
 /// open to one side as a room is, looked at and lit through that.
 Scene scene_around_model(const std::filesystem::path& file) {
@@ -73,17 +88,18 @@ Scene scene_around_model(const std::filesystem::path& file) {
         return glm::dvec3(glm::rotate(glm::dmat4(1), yaw, {0, 1, 0}) * glm::dvec4(x, y, z, 0));
     };
     scene.camera.vertical_fov = 35;
-    const double distance = 1.04 * radius / std::sin(glm::radians(scene.camera.vertical_fov / 2));
-    const glm::dvec3 from = is_room ? turned(0.06, 0.05, 1) : turned(0.42, 0.2, 1);
+    const glm::dvec3 from = glm::normalize(is_room ? turned(0.06, 0.05, 1) : turned(0.42, 0.2, 1));
+    const double distance = fitting_distance(bounds, from, scene.camera.vertical_fov);
     scene.camera.look_at = center;
-    scene.camera.position = center + distance * glm::normalize(from);
+    scene.camera.position = center + distance * from;
     scene.camera.near_plane = 0.01 * radius;
     scene.camera.focus_distance = distance;
 
     const glm::dvec3 key = is_room ? turned(-0.35, 0.35, 1) : turned(-0.6, 0.9, 1);
-    add_directional(scene, key, {1.9f, 1.8f, 1.65f}, 2.4 * radius, true);
+    const glm::vec3 key_color = is_room ? glm::vec3(0.8f, 0.76f, 0.7f) : glm::vec3(1.9f, 1.8f, 1.65f);
+    add_directional(scene, key, key_color, 2.4 * radius, true);
     add_directional(scene, turned(1, 0.3, 0.5), {0.35f, 0.4f, 0.5f}, 0, false);
-    add_directional(scene, turned(0.5, 0.8, -1), {1.0f, 1.0f, 1.1f}, 0, false);
+    if (!is_room) add_directional(scene, turned(0.5, 0.8, -1), {1.0f, 1.0f, 1.1f}, 0, false);
     scene.surroundings.zenith = {0.34f, 0.36f, 0.4f};
     scene.surroundings.horizon = {0.16f, 0.165f, 0.17f};
     scene.surroundings.ground = {0.07f, 0.07f, 0.07f};

@@ -188,10 +188,21 @@ private:
             Light light = read_light(*value_of_light);
             light.node = index;
             scene_.lights.push_back(light);
+            check_light_counts(*value_of_light);
         }
         if (const auto children = map.find("children")) {
             for (const YamlValue& child : children->list())
                 read_node(child, index, depth + 1);
+        }
+    }
+
+    void check_light_counts(const YamlValue& light) const {
+        if (scene_.lights.size() > max_lights)
+            light.fail(fmt::format("a scene has at most {} lights", max_lights));
+        const auto shadows = std::count_if(scene_.lights.begin(), scene_.lights.end(),
+                                           [](const Light& other) { return other.casts_shadow; });
+        if (static_cast<std::size_t>(shadows) > max_shadows) {
+            light.fail(fmt::format("at most {} lights of a scene cast shadows", max_shadows));
         }
     }
 

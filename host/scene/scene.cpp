@@ -70,6 +70,7 @@ Camera Scene::camera_at(double time, const std::vector<glm::dmat4>& placed) cons
     const glm::dmat4 view_to_world =
         look_at_matrix(to_world(camera.position, 1), to_world(camera.look_at, 1), to_world(camera.up, 0));
     std::copy_n(glm::value_ptr(view_to_world), 16, result.view_to_world.begin());
+    result.focus_distance = camera.focus_distance.value_or(0);
     return result;
 }
 

@@ -78,6 +78,9 @@ struct Node {
     std::vector<Part> parts;
 };
 
+inline constexpr std::size_t max_lights = 16;
+inline constexpr std::size_t max_shadows = 4; ///< lights of a scene that cast any
+
 /// Shines along -z of its node. `color` is the radiance of a white diffuse surface that faces the light where
 /// the attenuation is 1 (irradiance / pi).
 struct Light {

@@ -1,6 +1,8 @@
 // The uniform blocks of shaders/scene/view.glsl and material.glsl, std140.
 #pragma once
 
+#include "scene.hpp"
+
 #include <glm/glm.hpp>
 
 #include <array>
@@ -8,9 +10,6 @@
 #include <cstdint>
 
 namespace postfx::host {
-
-inline constexpr std::size_t max_lights = 16;
-inline constexpr std::size_t max_shadows = 4;
 
 struct LightBlock {
     glm::vec4 position, direction, color, attenuation;

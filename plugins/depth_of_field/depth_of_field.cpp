@@ -13,11 +13,11 @@ constexpr double pinhole = 128; ///< the f-number that counts as infinite
 constexpr const char* views[] = {"picture", "circle_of_confusion"};
 
 constexpr postfx::Parameter parameters[] = {
-    postfx::number("focus_distance", 5)
-        .range(0.01, 100000)
+    postfx::number("focus_distance", 0)
+        .range(0, 100000)
         .in_unit("m")
-        .logarithmic()
-        .about("Distance of the plane that is sharp, along the view axis"),
+        .about(
+            "Distance of the plane that is sharp; 0: what the camera is focused on, 5 m if it does not say"),
     postfx::number("f_number", 1.4)
         .range(0.5, pinhole)
         .logarithmic()
@@ -54,6 +54,12 @@ struct Lens {
     double scale, offset, sky, limit;
 };
 
+double focus_metres(const postfx::Request& in) {
+    constexpr double unsaid = 5;
+    if (in.number("focus_distance") > 0) return in.number("focus_distance");
+    return in.camera().focus_distance > 0 ? in.camera().focus_distance : unsaid;
+}
+
 double aperture_metres(const postfx::Request& in) {
     return in.number("focal_length") / 1000 / in.number("f_number");
 }
@@ -61,7 +67,7 @@ double aperture_metres(const postfx::Request& in) {
 /// c = A H / (2 S tan(fov/2)) (1 - S/z): what a lens of diameter A gives in a camera of that field of view.
 Lens perspective_lens(const postfx::Request& in) {
     const postfx_camera& camera = in.camera();
-    const double focus = in.number("focus_distance");
+    const double focus = focus_metres(in);
     const double at_infinity = aperture_metres(in) * in.height() / (2 * focus * camera.tan_half_fov);
     const double at_near = at_infinity * (focus / camera.near_plane - 1);
     return {-at_infinity * focus * camera.depth_scale, at_infinity * (1 - focus * camera.depth_offset),
@@ -71,7 +77,7 @@ Lens perspective_lens(const postfx::Request& in) {
 /// c = A (z/S - 1) metres of the scene, at any place: the bundle of rays that meets in the focus plane.
 Lens orthographic_lens(const postfx::Request& in) {
     const postfx_camera& camera = in.camera();
-    const double focus = in.number("focus_distance");
+    const double focus = focus_metres(in);
     const double per_metre = aperture_metres(in) * in.height() / camera.vertical_extent / focus;
     constexpr double unbounded = std::numeric_limits<double>::infinity();
     return {per_metre * camera.depth_scale, per_metre * (camera.depth_offset - focus), unbounded, unbounded};
@@ -148,8 +154,8 @@ void plan(const postfx::Request& in, postfx::Builder& out) {
     if (largest_allowed <= sharp_diameter) {
         return out.identity("max_circle_of_confusion is at most one pixel, which counts as sharp");
     }
-    if (in.number("focus_distance") <= in.number("focal_length") / 1000) {
-        const std::string text = "focus_distance is " + std::to_string(in.number("focus_distance"))
+    if (focus_metres(in) <= in.number("focal_length") / 1000) {
+        const std::string text = "the focus distance is " + std::to_string(focus_metres(in))
                                  + " m, but a lens can only focus beyond its focal length of "
                                  + std::to_string(in.number("focal_length")) + " mm";
         return out.refuse(text.c_str());

@@ -42,11 +42,19 @@ Color color_at(const Image64& image, int x, int y) {
     return color;
 }
 
+/// What is sharp [m]: what the effect was told, else what the camera says, else 5.
+double focus_of(const ReferenceInput& input) {
+    for (double distance : {input.value("focus_distance"), input.camera.focus_distance}) {
+        if (distance > 0) return distance;
+    }
+    return 5;
+}
+
 /// The thin lens, from metres.
 class Lens {
 public:
     explicit Lens(const ReferenceInput& input)
-        : camera_(input.camera), focus_(input.value("focus_distance")),
+        : camera_(input.camera), focus_(focus_of(input)),
           aperture_(input.value("focal_length") * 1e-3 / input.value("f_number")),
           height_(input.color.height) {
         const double near = std::abs(unlimited(camera_.near_plane));

@@ -355,3 +355,20 @@ TEST_CASE("a lens can't focus within its focal length, and says so") {
     CHECK_THROWS_WITH(plan_effect("depth_of_field", input, values),
                       Catch::Contains("beyond its focal length of 200"));
 }
+
+TEST_CASE("without a focus distance the camera's own counts, and 5 m if it has none") {
+    Input input{.color = noise(48, 32, 0, 1), .attachments = {{"depth", Image(48, 32, 1)}}};
+    for (std::size_t i = 0; i < 48 * 32; ++i) {
+        const double z = 1 + 0.01 * static_cast<double>(i);
+        input.attachments["depth"].values[i] = static_cast<float>(input.camera.depth_at(z));
+    }
+    const auto run = [&](double camera_focus, double focus) {
+        input.camera.focus_distance = camera_focus;
+        return run_effect("depth_of_field", input,
+                          {{"focus_distance", focus}, {"max_circle_of_confusion", 0.1}, {"f_number", 0.5}});
+    };
+    CHECK(same_bits(run(3, 0), run(0, 3)));
+    CHECK(same_bits(run(0, 0), run(0, 5)));
+    CHECK(same_bits(run(7, 3), run(0, 3)));
+    CHECK_FALSE(same_bits(run(3, 0), run(0, 0)));
+}

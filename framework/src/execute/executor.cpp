@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <memory>
 #include <optional>
 
 namespace postfx {
@@ -60,6 +61,8 @@ void set_pass_state() {
     glPolygonMode(GL_FRONT_AND_BACK, GL_FILL);
 }
 
+using TexturePtr = std::shared_ptr<gl::Texture>;
+
 struct PassTime {
     double cpu_ms = 0, wall_ms = 0;
 };
@@ -77,7 +80,7 @@ struct Executor::State {
     /// Everything that belongs to one plan.
     struct Ready {
         Plan plan;
-        std::vector<gl::Texture> targets;
+        std::vector<TexturePtr> targets; ///< shared with the plan before while that is being replaced
         std::vector<ReadyPass> passes;
     };
 
@@ -88,7 +91,7 @@ struct Executor::State {
     GLuint texture(const Ready& ready, const ImageRef& image,
                    const std::vector<std::uint32_t>& attachments) const {
         return image.kind == ImageRef::Kind::attachment ? attachments[image.index]
-                                                        : ready.targets[image.index].name();
+                                                        : ready.targets[image.index]->name();
     }
 
     void draw(const ReadyPass& ready_pass, const Pass& pass,
@@ -115,18 +118,20 @@ struct Executor::State {
     std::optional<gl::TimestampRing> ring;
     std::optional<gl::ClockCheck> clock;
     Timing last_timing = Timing::off;
-    GLuint picture = 0;
+    bool prepared = false;
+    GLuint picture = 0; ///< of the last run; 0 = there was none since prepare()
 };
 
 namespace {
 
 /// Take from `old` a texture of that size and format, or make one.
-gl::Texture reuse_or_make(std::vector<gl::Texture>& old, const Target& target) {
-    const auto found = std::find_if(old.begin(), old.end(), [&](const gl::Texture& texture) {
-        return texture && texture.width() == target.width && texture.height() == target.height
-               && texture.format() == target.format;
+TexturePtr reuse_or_make(std::vector<TexturePtr>& old, const Target& target) {
+    const auto found = std::find_if(old.begin(), old.end(), [&](const TexturePtr& texture) {
+        return texture && texture->width() == target.width && texture->height() == target.height
+               && texture->format() == target.format;
     });
-    return found != old.end() ? std::move(*found) : gl::Texture(target.width, target.height, target.format);
+    return found != old.end() ? std::move(*found)
+                              : std::make_shared<gl::Texture>(target.width, target.height, target.format);
 }
 
 /// Same passes into the same targets: only numbers in the uniform blocks may differ.
@@ -168,12 +173,14 @@ void Executor::prepare(const Plan& plan) {
     for (const Pass& pass : plan.passes) {
         ready.passes.push_back({pass.name, state.programs.get(*pass.program, pass), {}, {}});
     }
+    // A copy of the list: whatever fails below, the plan before keeps its targets.
+    std::vector<TexturePtr> old = state.current.targets;
     for (const Target& target : plan.targets)
-        ready.targets.push_back(reuse_or_make(state.current.targets, target));
+        ready.targets.push_back(reuse_or_make(old, target));
     for (std::size_t i = 0; i < plan.passes.size(); ++i) {
         std::vector<GLuint> outputs;
         for (const ImageRef& output : plan.passes[i].outputs)
-            outputs.push_back(ready.targets[output.index].name());
+            outputs.push_back(ready.targets[output.index]->name());
         ready.passes[i].framebuffer = gl::make_framebuffer(outputs);
         const auto& bytes = plan.passes[i].uniform_block;
         ready.passes[i].block = gl::make_buffer(bytes.size(), bytes.data());
@@ -183,15 +190,19 @@ void Executor::prepare(const Plan& plan) {
     state.profile.assign(plan.passes.size(), {});
     state.ring.reset();
     state.last_timing = Timing::off;
+    state.prepared = true;
+    state.picture = 0;
 }
 
 std::uint32_t Executor::run(const FrameInputs& inputs, Timing timing) {
     State& state = *state_;
     const Plan& plan = state.current.plan;
+    if (!state.prepared) throw Error("run() before any prepare()");
     if (inputs.textures.size() != plan.attachments.size()) {
         throw Error(fmt::format("the plan reads {} attachments, {} were given", plan.attachments.size(),
                                 inputs.textures.size()));
     }
+    set_pass_state(); // before the clock is checked, which draws too
     if (timing == Timing::gpu && !state.ring) state.ring.emplace(plan.passes.size());
     if (timing != Timing::off && !state.clock) state.clock = gl::check_clock();
     state.last_timing = timing;
@@ -200,7 +211,6 @@ std::uint32_t Executor::run(const FrameInputs& inputs, Timing timing) {
     glNamedBufferSubData(state.frame_buffer.name(), 0, sizeof(block), &block);
     glBindBufferBase(GL_UNIFORM_BUFFER, 0, state.frame_buffer.name());
     glBindVertexArray(state.vertex_array.name());
-    set_pass_state();
 
     if (timing == Timing::gpu) {
         state.ring->begin_frame();
@@ -253,6 +263,7 @@ Report Executor::report() const {
 Image Executor::read_picture() const {
     const State& state = *state_;
     const Plan& plan = state.current.plan;
+    if (!state.picture) throw Error("read_picture() before any run()");
     // An input that came through untouched is read as floats: wide enough for any format that it may have.
     const bool own = plan.picture.kind == ImageRef::Kind::target;
     const Format format = own ? plan.targets[plan.picture.index].format : Format::rgba32f;

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstring>
 #include <fstream>
 #include <functional>
@@ -27,9 +28,14 @@ void main() {
 ProgramCache::ProgramCache(std::filesystem::path directory) : directory_(std::move(directory)) {
     const gl::DeviceInfo device = gl::current_device();
     device_ = device.vendor + "\n" + device.renderer + "\n" + device.version;
-    GLint formats = 0;
-    glGetIntegerv(GL_NUM_PROGRAM_BINARY_FORMATS, &formats);
-    if (formats == 0) directory_.clear(); // the driver gives no binaries
+    GLint count = 0;
+    glGetIntegerv(GL_NUM_PROGRAM_BINARY_FORMATS, &count);
+    binary_formats_.resize(static_cast<std::size_t>(count));
+    if (count > 0) {
+        glGetIntegerv(GL_PROGRAM_BINARY_FORMATS, binary_formats_.data());
+    } else {
+        directory_.clear(); // the driver gives no binaries
+    }
 }
 
 GLuint ProgramCache::get(const ProgramSource& source, const Pass& pass) {
@@ -65,6 +71,11 @@ gl::Program ProgramCache::load(const ProgramSource& source) const {
     if (bytes.size() <= head) return {};
     std::memcpy(&format, bytes.data(), sizeof(format));
     std::memcpy(&length, bytes.data() + sizeof(format), sizeof(length));
+    // A format that the driver does not know would be a GL error.
+    if (std::find(binary_formats_.begin(), binary_formats_.end(), static_cast<GLint>(format))
+        == binary_formats_.end()) {
+        return {};
+    }
     if (length != source.text.size() || bytes.size() <= head + length
         || bytes.compare(head, length, source.text) != 0) {
         return {};

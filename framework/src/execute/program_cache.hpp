@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <map>
 #include <string>
+#include <vector>
 
 namespace postfx {
 
@@ -26,7 +27,8 @@ private:
     void save(const ProgramSource& source, const gl::Program& program) const;
 
     std::filesystem::path directory_;
-    std::string device_; ///< binaries are good for this driver only
+    std::vector<GLint> binary_formats_; ///< that the driver knows
+    std::string device_;                ///< binaries are good for this driver only
     std::map<std::uint64_t, gl::Program> programs_;
 };
 

@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cstring>
 #include <string_view>
 #include <utility>
 
@@ -67,7 +69,10 @@ std::vector<std::string> take_debug_messages() {
 }
 
 DebugGroup::DebugGroup(const char* name) {
-    if (glad_glPushDebugGroup) glPushDebugGroup(GL_DEBUG_SOURCE_APPLICATION, 0, -1, name);
+    // Drivers refuse messages beyond a length of their own (4096 in Mesa): a pass of many effects has a long name.
+    constexpr std::size_t longest = 255;
+    const auto length = static_cast<GLsizei>(std::min(std::strlen(name), longest));
+    if (glad_glPushDebugGroup) glPushDebugGroup(GL_DEBUG_SOURCE_APPLICATION, 0, length, name);
 }
 
 DebugGroup::~DebugGroup() {

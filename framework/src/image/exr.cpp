@@ -88,7 +88,7 @@ public:
     }
     /// The display window, once for each list of channels; 0 where the file has nothing. All in one go, because the
     /// library unpacks all channels of a row together.
-    std::vector<Image> read(const std::vector<std::vector<std::string>>& lists) {
+    std::vector<Image> read_all(const std::vector<std::vector<std::string>>& lists) {
         std::vector<Image> images;
         std::vector<std::vector<Wanted>> wanted(static_cast<std::size_t>(input_.parts()));
         for (const std::vector<std::string>& names : lists) {
@@ -103,7 +103,7 @@ public:
             if (!wanted[part].empty()) read_part(part, wanted[part], images);
         return images;
     }
-    Image read(const std::vector<std::string>& names) { return std::move(read(std::vector{names}).front()); }
+    Image read(const std::vector<std::string>& names) { return std::move(read_all({names}).front()); }
 
 private:
     struct Source {
@@ -197,7 +197,7 @@ ExrLayers read_exr(const Path& file, const std::string& bytes) {
         std::vector<std::vector<std::string>> lists = {main->second};
         for (const auto& layer : layers)
             if (&layer != main) lists.push_back(layer.second);
-        std::vector<Image> images = exr.read(lists);
+        std::vector<Image> images = exr.read_all(lists);
 
         ExrLayers read;
         auto next = images.begin();

@@ -68,14 +68,16 @@ Mesh crown(Random& random, float radius) {
     for (int row = 0; row <= up; ++row) {
         const float polar = std::numbers::pi_v<float> * (static_cast<float>(row) / up - 0.5f);
         for (int column = 0; column < around; ++column) {
-            const float angle = two_pi * (static_cast<float>(column) + 0.5f * static_cast<float>(row % 2)) / around;
-            const glm::vec3 p(std::cos(polar) * std::cos(angle), std::sin(polar), -std::cos(polar) * std::sin(angle));
+            const float angle =
+                two_pi * (static_cast<float>(column) + 0.5f * static_cast<float>(row % 2)) / around;
+            const glm::vec3 p(std::cos(polar) * std::cos(angle), std::sin(polar),
+                              -std::cos(polar) * std::sin(angle));
             // Slices of plane noise: continuous over the sphere.
             const auto bump = [&](float scale, std::uint32_t octave) {
-                return lattice_noise(scale * (p.x + 1.3f * p.y), scale * p.z, seed + octave) +
-                       lattice_noise(scale * (p.y - p.x), scale * (p.z + 1.1f * p.y), seed + octave + 1);
+                return lattice_noise(scale * (p.x + 1.3f * p.y), scale * p.z, seed + octave)
+                       + lattice_noise(scale * (p.y - p.x), scale * (p.z + 1.1f * p.y), seed + octave + 1);
             };
-            const auto swell = static_cast<float>(0.16 * bump(1.9f, 0) + 0.1 * bump(5.3f, 2));
+            const auto swell = static_cast<float>(0.19 * bump(1.9f, 0) + 0.13 * bump(5.3f, 2));
             mesh.add({radius * p * (1 + swell), p, {0, 0}, glm::vec3(0.7f + 0.3f * p.y + 1.4f * swell)});
         }
     }
@@ -86,7 +88,8 @@ Mesh crown(Random& random, float radius) {
         }
     }
     compute_normals(mesh);
-    for (Vertex& vertex : mesh.vertices) vertex.tint = glm::max(vertex.tint, glm::vec3(0.25f));
+    for (Vertex& vertex : mesh.vertices)
+        vertex.tint = glm::max(vertex.tint, glm::vec3(0.25f));
     return mesh;
 }
 
