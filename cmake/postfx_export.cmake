@@ -46,7 +46,7 @@ set(POSTFX_FUNCTIONS_DIR "\${CMAKE_CURRENT_LIST_DIR}")
 configure_file(cmake/postfx-config.cmake.in ${PROJECT_BINARY_DIR}/installed/postfx-config.cmake @ONLY)
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/postfx-config-version.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/installed/postfx-config.cmake ${PROJECT_BINARY_DIR}/postfx-config-version.cmake
-              cmake/postfx_add_effect.cmake cmake/postfx_warnings.cmake cmake/embed_glsl.cmake
+              cmake/postfx_add_effect.cmake cmake/plugin_exports.map cmake/postfx_warnings.cmake cmake/embed_glsl.cmake
         DESTINATION ${config_dir})
 install(DIRECTORY framework/include/postfx DESTINATION include)
 install(DIRECTORY tests/harness/ DESTINATION include/postfx_testing FILES_MATCHING PATTERN "*.hpp")

@@ -42,10 +42,14 @@ void ChainOptions::declare(CLI::App& app) {
 Chain ChainOptions::read(const Catalog& catalog) const {
     Chain chain;
     const std::string& name = chain_.empty() && effects_.empty() ? default_chain_ : chain_;
-    if (!name.empty()) chain = read_chain(find_config("chains", name), catalog);
+    if (!name.empty()) chain = read_chain_named(name, catalog);
     for (const std::string& effect : effects_)
         parse_chain_entry(effect, "--effect", catalog, chain);
     return chain;
+}
+
+Chain read_chain_named(const std::string& name_or_path, const Catalog& catalog) {
+    return read_chain(find_config("chains", name_or_path), catalog, {data_directory() / "configs/chains"});
 }
 
 Size parse_size(const std::string& text) {

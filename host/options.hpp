@@ -28,6 +28,8 @@ public:
     /// `default_chain` is used when neither option is given.
     explicit ChainOptions(std::string default_chain) : default_chain_(std::move(default_chain)) {}
     void declare(CLI::App& app);
+    /// Was any of the two given?
+    bool given() const { return !chain_.empty() || !effects_.empty(); }
     /// The chain file's effects, then those of --effect in order.
     Chain read(const Catalog& catalog) const;
 
@@ -36,6 +38,9 @@ private:
     std::string chain_;
     std::vector<std::string> effects_;
 };
+
+/// A chain by its file or its name in configs/chains/; it may include those that are there.
+Chain read_chain_named(const std::string& name_or_path, const Catalog& catalog);
 
 /// "1280x720". Throws Error for anything else, or a side of 0 or above 16384.
 struct Size {

@@ -48,6 +48,19 @@ private:
 
 } // namespace
 
+TEST_CASE("an include that is not beside the file is looked for in the include directories") {
+    const ChainFolder folder;
+    folder.write("shipped/base.yaml", "effects: [shade]");
+    folder.write("shipped/other.yaml", "effects: [shade]");
+    folder.write("mine/other.yaml", "effects: [blur]");
+    folder.write("mine/a.yaml", "include: base.yaml");
+    folder.write("mine/b.yaml", "include: other.yaml");
+    const std::vector<fs::path> directories = {folder.path() / "shipped"};
+    CHECK(names(postfx::read_chain(folder.path() / "mine/a.yaml", catalog(), directories)) == Names{"shade"});
+    CHECK(names(postfx::read_chain(folder.path() / "mine/b.yaml", catalog(), directories)) == Names{"blur"});
+    CHECK(folder.error("mine/a.yaml").find("can't include \"base.yaml\"") != std::string::npos);
+}
+
 TEST_CASE("an included chain comes first, changed by overrides") {
     const ChainFolder folder;
     folder.write("base/default.yaml", "effects: [shade, blur: {taps: 3}]");

@@ -1,4 +1,4 @@
-// docs/chains.md: its chains are chains of the effects that there are, and its mistakes get the messages it prints.
+// The chains that docs/chains.md and the README show can be read; mistakes get the messages that the page prints.
 #include "markdown.hpp"
 
 #include <postfx/postfx.hpp>
@@ -27,6 +27,17 @@ TEST_CASE("docs/chains.md shows chains that can be read, and the messages of tho
     }
     CHECK(read == 2);
     CHECK(refused == 2);
+}
+
+TEST_CASE("the README's chain can be read") {
+    const Catalog catalog = Catalog::discover();
+    int read = 0;
+    for (const CodeBlock& block : code_blocks(POSTFX_SOURCE_DIRECTORY "/README.md")) {
+        if (block.language != "yaml") continue;
+        ++read;
+        CHECK_NOTHROW(parse_chain(block.text, POSTFX_SOURCE_DIRECTORY "/configs/chains/page.yaml", catalog));
+    }
+    CHECK(read == 1);
 }
 
 TEST_CASE("docs/chains.md tells what entries of one effect are called, and what overrides change") {

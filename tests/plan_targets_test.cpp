@@ -80,6 +80,7 @@ Content simulate(const Plan& plan) {
             const postfx::Target& target = plan.targets.at(static_cast<std::size_t>(pass.outputs[o].index));
             REQUIRE(target.width == pass.width);
             REQUIRE(target.height == pass.height);
+            if (o == 0) REQUIRE(target.format == pass.format);
             targets.at(static_cast<std::size_t>(pass.outputs[o].index)) =
                 content(pass.name, static_cast<int>(o), inputs);
         }
@@ -202,6 +203,7 @@ TEST_CASE("in 1000 random plans sharing and dropping change no picture") {
                 plan.targets.push_back(
                     {pass.width, pass.height, random.below(3) ? Format::rgba16f : Format::r8});
             }
+            pass.format = plan.targets[pass.outputs.front().index].format;
             plan.passes.push_back(std::move(pass));
         }
         plan.picture = {ImageRef::Kind::target, random.below(static_cast<int>(plan.targets.size()))};

@@ -35,7 +35,7 @@ TEST_CASE("the window shows what render writes") {
     const Scratch scratch;
     const std::vector<std::string> common = {"cornell", "--chain", "cinematic", "--size", "320x180"};
     std::vector<std::string> view = {program, "view", "--frames", "1", "-o", scratch.file("view.png")};
-    std::vector<std::string> render = {program, "render", "-q", "-o", scratch.file("render.png")};
+    std::vector<std::string> render = {program, "render", "-q", "--samples", "1", "-o", scratch.file("render.png")};
     view.insert(view.end(), common.begin(), common.end());
     render.insert(render.end(), common.begin(), common.end());
     const Outcome viewed = under_display(view);

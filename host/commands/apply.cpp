@@ -64,9 +64,9 @@ public:
     Status run() override {
         Facts facts;
         facts.output = output_for(output_);
+        if (!chain_options_.given()) throw Error("nothing to apply: give --chain or --effect");
         const Catalog catalog = catalog_options_.load();
         Chain chain = chain_options_.read(catalog);
-        if (chain.entries.empty()) throw Error("nothing to apply: give --chain or --effect");
 
         const ImageFile color = read_image(color_);
         facts.width = color.image.width;

@@ -2,7 +2,6 @@
 #include "command.hpp"
 #include "options.hpp"
 #include "picture.hpp"
-#include "resources.hpp"
 #include "scene_input.hpp"
 
 #include <gl/clock.hpp>
@@ -154,7 +153,7 @@ private:
     void make_runners(const Catalog& catalog) {
         if (chains_.empty()) chains_.emplace_back("cinematic");
         for (const std::string& name : chains_) {
-            const Chain chain = read_chain(find_config("chains", name), catalog);
+            const Chain chain = read_chain_named(name, catalog);
             runners_.push_back({name, std::make_unique<ChainRunner>(chain, facts_)});
             if (!unfused_) continue;
             Facts apart = facts_;

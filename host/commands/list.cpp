@@ -5,8 +5,11 @@
 #include "resources.hpp"
 #include "text_table.hpp"
 
+#include <postfx/error.hpp>
+
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <fstream>
 
 namespace postfx::host {
@@ -30,10 +33,7 @@ std::string first_sentence(const std::filesystem::path& file) {
 class ListCommand : public Command {
 public:
     void declare(CLI::App& app) override {
-        app.add_option("WHAT", what_, "effects, scenes or chains")
-            ->required()
-            ->type_name("")
-            ->check(CLI::IsMember({"effects", "scenes", "chains"}).description(""));
+        app.add_option("WHAT", what_, "effects, scenes or chains")->required()->type_name("");
         app.add_flag("--json", json_, "As JSON");
         app.add_flag("-v,--verbose", verbose_, "Also say from which file each comes");
         catalog_.declare(app);
@@ -42,6 +42,11 @@ public:
     }
 
     Status run() override {
+        const std::vector<std::string> kinds = {"effects", "scenes", "chains"};
+        if (std::find(kinds.begin(), kinds.end(), what_) == kinds.end()) {
+            throw Error(fmt::format("nothing called \"{}\" to list{} (effects, scenes or chains)", what_,
+                                    did_you_mean(what_, kinds)));
+        }
         const Json items = what_ == "effects" ? effects() : configs();
         if (json_) {
             fmt::print("{}\n", items.dump(2));

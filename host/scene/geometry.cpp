@@ -86,7 +86,6 @@ void Mesh::face(const std::vector<glm::vec3>& corners, glm::vec3 tint) {
 void Mesh::append(const Mesh& other, const glm::mat4& placement, glm::vec3 tint) {
     const auto first = static_cast<std::uint32_t>(vertices.size());
     const glm::mat3 normals = glm::transpose(glm::inverse(glm::mat3(placement)));
-    vertices.reserve(vertices.size() + other.vertices.size());
     for (const Vertex& vertex : other.vertices) {
         vertices.push_back({glm::vec3(placement * glm::vec4(vertex.position, 1)),
                             glm::normalize(normals * vertex.normal), vertex.uv, vertex.tint * tint});

@@ -27,6 +27,12 @@ vec3 postfx_view_position(vec2 uv, float depth) {
     return vec3(u_frame.orthographic ? plane : plane * z, -z);
 }
 
+// Where the pixel's ray crosses the plane 1 m before the camera (perspective), or lies beside the axis (orthographic) [m].
+// From integers: mirrored pixels have mirrored values to the last bit, and the centre has exactly 0.
+vec2 postfx_view_plane(Pixel pixel) {
+    return vec2(2 * pixel.index + 1 - pixel.size) / vec2(pixel.size) * u_frame.half_extent;
+}
+
 // Unit vector from the camera towards the point seen at uv, in view space.
 vec3 postfx_view_direction(vec2 uv) {
     if (u_frame.orthographic) return vec3(0.0, 0.0, -1.0);

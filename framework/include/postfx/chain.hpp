@@ -39,7 +39,7 @@ inline constexpr std::size_t max_chain_entries = 256;
 
 /// Read a chain file. Throws Error with file:line:column, what was expected and the nearest name.
 ///
-///     include: default.yaml      # another chain, relative to this file; its effects come first
+///     include: default.yaml      # another chain, beside this file or in an include directory; its effects come first
 ///     overrides:                 # by entry name: values, enabled and quality of included effects
 ///       dust: {amount: 0}
 ///     effects:                   # optional when include is there
@@ -48,10 +48,12 @@ inline constexpr std::size_t max_chain_entries = 256;
 ///
 /// A file is UTF-8 of at most 1 MiB, nested at most 16 deep, without YAML's anchors, aliases, merge keys and
 /// tags; at most 16 files include each other. Lines and columns count from 1, columns in characters.
-Chain read_chain(const std::filesystem::path& file, const Catalog& catalog);
+Chain read_chain(const std::filesystem::path& file, const Catalog& catalog,
+                 const std::vector<std::filesystem::path>& include_directories = {});
 
 /// The same from text; `origin` names it in messages and anchors relative includes.
-Chain parse_chain(const std::string& yaml, const std::filesystem::path& origin, const Catalog& catalog);
+Chain parse_chain(const std::string& yaml, const std::filesystem::path& origin, const Catalog& catalog,
+                  const std::vector<std::filesystem::path>& include_directories = {});
 
 /// One item of `effects:`, e.g. "blur: {radius: 0.2}" or "shade", appended to `chain`.
 void parse_chain_entry(const std::string& yaml, const std::string& origin, const Catalog& catalog,

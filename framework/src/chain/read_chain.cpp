@@ -186,7 +186,8 @@ Sections split(const YamlNode& root) {
 /// Reads files that include files. Remembers which are open, outermost first.
 class Reader {
 public:
-    explicit Reader(const Catalog& catalog) : catalog_(catalog) {}
+    Reader(const Catalog& catalog, const std::vector<fs::path>& include_directories)
+        : catalog_(catalog), include_directories_(include_directories) {}
 
     Chain read(const std::string& yaml, const fs::path& origin) {
         open_.push_back({origin, identity(origin)});
@@ -223,7 +224,7 @@ private:
     Chain read_included(const YamlNode& include) {
         if (!include.is(Kind::scalar) || include.text.empty())
             refuse(include, "\"include\"", "the name of a chain file");
-        const fs::path file = (open_.back().shown.parent_path() / include.text).lexically_normal();
+        const fs::path file = find_included(include.text);
         refuse_cycle(file, include);
         if (open_.size() == max_include_depth) {
             throw Error(include.place,
@@ -239,6 +240,16 @@ private:
         return read(yaml, file);
     }
 
+    /// Beside the including file, else in the include directories; where it is nowhere, beside the file.
+    fs::path find_included(const std::string& name) const {
+        const fs::path beside = (open_.back().shown.parent_path() / name).lexically_normal();
+        if (fs::exists(beside)) return beside;
+        for (const fs::path& directory : include_directories_) {
+            if (fs::exists(directory / name)) return directory / name;
+        }
+        return beside;
+    }
+
     void refuse_cycle(const fs::path& file, const YamlNode& include) const {
         const fs::path wanted = identity(file);
         const auto first = std::find_if(open_.begin(), open_.end(),
@@ -252,17 +263,20 @@ private:
     }
 
     const Catalog& catalog_;
+    const std::vector<fs::path>& include_directories_;
     std::vector<OpenFile> open_;
 };
 
 } // namespace
 
-Chain read_chain(const fs::path& file, const Catalog& catalog) {
-    return parse_chain(read_text_file(file, YamlLimits::bytes), file, catalog);
+Chain read_chain(const fs::path& file, const Catalog& catalog,
+                 const std::vector<fs::path>& include_directories) {
+    return parse_chain(read_text_file(file, YamlLimits::bytes), file, catalog, include_directories);
 }
 
-Chain parse_chain(const std::string& yaml, const fs::path& origin, const Catalog& catalog) {
-    return Reader(catalog).read(yaml, origin);
+Chain parse_chain(const std::string& yaml, const fs::path& origin, const Catalog& catalog,
+                  const std::vector<fs::path>& include_directories) {
+    return Reader(catalog, include_directories).read(yaml, origin);
 }
 
 void parse_chain_entry(const std::string& yaml, const std::string& origin, const Catalog& catalog,

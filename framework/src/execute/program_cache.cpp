@@ -44,7 +44,7 @@ GLuint ProgramCache::get(const ProgramSource& source, const Pass& pass) {
     program = load(source);
     if (program) return program.name();
     try {
-        program = gl::make_program(vertex_text, source.text, pass.name, source.files);
+        program = gl::make_program(vertex_text, source.text, "", source.files);
     } catch (const Error& error) {
         Place place = error.place();
         place.effect = pass.name;

@@ -88,7 +88,7 @@ Sampler make_sampler(bool linear);
 
 /// Compile and link; the binary can be retrieved. Throws Error with place.file and line from the first error
 /// in the driver's log, found through the sources' #line directives and `files` (by source-string number);
-/// `what` names the program.
+/// `what` names the program in the message; may be empty.
 Program make_program(std::string_view vertex, std::string_view fragment, const std::string& what,
                      const std::vector<std::string>& files = {});
 

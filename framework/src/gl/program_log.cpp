@@ -56,17 +56,18 @@ Error program_error(const std::string& log, const std::string& what, const Numbe
     static const std::regex place_and_text(
         R"(^(?:ERROR: )?\d+(?::(\d{1,6})\((\d{1,6})\)|\((\d{1,6})\)|:(\d{1,6}))\s*:\s*(.*)$)");
     const std::string line = first_error(log);
+    const std::string prefix = what.empty() ? "" : what + ": ";
     std::smatch parts;
-    if (!std::regex_match(line, parts, place_and_text)) return Error(fmt::format("{}: {}", what, line));
+    if (!std::regex_match(line, parts, place_and_text)) return Error(prefix + line);
     const int line_number =
         number(parts[1]) + number(parts[3]) + number(parts[4]); // one of the three matched
     const NumberedSource::Origin origin = source.origin(line_number);
-    if (origin.file >= files.size()) return Error(fmt::format("{}: {}", what, line));
+    if (origin.file >= files.size()) return Error(prefix + line);
     Place place;
     place.file = files[origin.file];
     place.line = origin.line;
     place.column = number(parts[2]);
-    return {place, fmt::format("{}: {}", what, parts[5].str())};
+    return {place, prefix + parts[5].str()};
 }
 
 } // namespace postfx::gl

@@ -1,0 +1,160 @@
+// Ambient occlusion from depth and normals, by slices of the horizon. README.md has the model and its limits.
+#include <postfx/plugin.hpp>
+
+#include <cstdint>
+
+namespace {
+
+constexpr const char* choices_without_ambient[] = {"skip", "multiply"};
+enum WithoutAmbient { skip, multiply };
+constexpr const char* views[] = {"picture", "visibility"};
+enum View { picture, visibility };
+
+constexpr postfx::Parameter parameters[] = {
+    postfx::number("radius", 1)
+        .range(0, 1000)
+        .in_unit("m")
+        .identity_at(0)
+        .about("Surfaces farther away than this do not occlude"),
+    postfx::number("strength", 1).range(0, 1).identity_at(0).about("Share of the occlusion that is applied"),
+    postfx::number("falloff", 0.6)
+        .range(0, 1)
+        .about("Last part of the radius over which occlusion fades out; 0: all or nothing"),
+    postfx::choice("without_ambient", choices_without_ambient)
+        .about("If the ambient share of the light is not known: skip, or multiply all light"),
+    postfx::choice("view", views).about("picture, or the ambient visibility alone"),
+};
+constexpr const char* attachments[] = {"depth", "normal", "ambient"};
+
+/// Of one pixel's estimate, and of the images that it is made in.
+struct Gather {
+    int block;        ///< one texel for every block x block pixels
+    int slices;       ///< planes through the line of sight
+    int steps;        ///< samples on either side of it, per slice
+    bool interleaved; ///< 4x4 texels look along different slices, and are averaged by the denoiser
+};
+
+enum LevelIndex { low, medium, high, ultra, reference, classic };
+constexpr postfx_level levels[] = {
+    postfx::level("low", "1 slice of 2 x 4 samples for every 3x3 pixels, denoised"),
+    postfx::level("medium", "2 slices of 2 x 4 samples for every 2x2 pixels, denoised"),
+    postfx::level("high", "2 slices of 2 x 6 samples for every pixel, denoised"),
+    postfx::level("ultra", "4 slices of 2 x 12 samples for every pixel, denoised"),
+    postfx::level("reference", "24 slices of 2 x 64 samples for every pixel; slow"),
+    postfx::level("classic", "share of 80 pixels around that are nearer; darkens slopes"),
+};
+constexpr Gather gathers[] = {
+    {3, 1, 4, true}, {2, 2, 4, true}, {1, 2, 6, true}, {1, 4, 12, true}, {1, 24, 64, false}};
+
+/// Below this the sphere of influence [pixels] lies within a pixel's nearest neighbours.
+constexpr double smallest_radius = 1.3;
+
+std::uint32_t divide_up(int size, int part) {
+    return static_cast<std::uint32_t>((size + part - 1) / part);
+}
+
+/// Projected radius [pixels] at the nearest place that the camera sees.
+double largest_radius(const postfx::Request& in) {
+    const postfx_camera& camera = in.camera();
+    const double metres_high =
+        camera.orthographic != 0 ? camera.vertical_extent : 2 * camera.tan_half_fov * camera.near_plane;
+    return in.number("radius") * in.height() / metres_high;
+}
+
+/// An image of (occlusion, metres along the view axis), one texel per block of pixels.
+postfx::PlanImage declare_gather(const postfx::Request& in, postfx::Builder& out, const Gather& gather) {
+    const std::uint32_t width = divide_up(in.width(), gather.block);
+    const std::uint32_t height = divide_up(in.height(), gather.block);
+    const postfx::PlanImage depth = out.attachment("depth");
+    postfx::PlanImage distances;
+    if (in.has("normal")) {
+        distances = out.pass("geometry", "ssao_geometry.glsl")
+                        .reads("depth", depth, "nearest")
+                        .reads("normal", out.attachment("normal"), "nearest")
+                        .constant("SSAO_BLOCK", gather.block)
+                        .formats({"r32f", "rgba16f"})
+                        .sized(width, height);
+    } else {
+        distances = out.pass("geometry", "ssao_geometry_rebuilt.glsl")
+                        .reads("depth", depth, "nearest")
+                        .constant("SSAO_BLOCK", gather.block)
+                        .formats({"r32f", "rgba16f"})
+                        .sized(width, height);
+    }
+    const postfx::PlanImage normals = distances.output(1);
+    const postfx::PlanImage gathered = out.pass("gather", "ssao_gather.glsl")
+                                           .reads("distances", distances, "nearest")
+                                           .reads("normals", normals, "nearest")
+                                           .constant("SSAO_BLOCK", gather.block)
+                                           .constant("SSAO_SLICES", gather.slices)
+                                           .constant("SSAO_STEPS", gather.steps)
+                                           .constant("SSAO_INTERLEAVED", gather.interleaved ? 1 : 0)
+                                           .format("rg32f")
+                                           .sized(width, height);
+    if (!gather.interleaved) return gathered;
+    return out.pass("denoise", "ssao_denoise.glsl")
+        .reads("gathered", gathered, "nearest")
+        .reads("normals", normals, "nearest")
+        .constant("SSAO_BLOCK", gather.block)
+        .format("rg32f")
+        .sized(width, height);
+}
+
+/// The seed of this effect: its stride is what makes its radius some per cent of the height.
+postfx::PlanImage declare_classic(const postfx::Request& in, postfx::Builder& out) {
+    return out.pass("classic", "ssao_classic.glsl")
+        .reads("depth", out.attachment("depth"), "nearest")
+        .int_value("stride", 1 + in.height() / 240)
+        .format("rg32f");
+}
+
+void declare_passes(const postfx::Request& in, postfx::Builder& out) {
+    const bool is_classic = in.level() == classic;
+    const int block = is_classic ? 1 : gathers[in.level()].block;
+    const postfx::PlanImage depth = out.attachment("depth");
+    const postfx::PlanImage occlusion =
+        is_classic ? declare_classic(in, out) : declare_gather(in, out, gathers[in.level()]);
+    if (in.choice("view") == visibility) {
+        out.compose("ssao_view.glsl")
+            .reads("depth", depth, "nearest")
+            .reads("occlusion", occlusion, "nearest")
+            .constant("SSAO_BLOCK", block);
+    } else if (in.has("ambient")) {
+        out.compose("ssao.glsl")
+            .reads("depth", depth, "nearest")
+            .reads("occlusion", occlusion, "nearest")
+            .reads("ambient", out.attachment("ambient"), "nearest")
+            .constant("SSAO_BLOCK", block);
+    } else {
+        out.compose("ssao_multiply.glsl")
+            .reads("depth", depth, "nearest")
+            .reads("occlusion", occlusion, "nearest")
+            .constant("SSAO_BLOCK", block);
+    }
+}
+
+void plan(const postfx::Request& in, postfx::Builder& out) {
+    if (in.number("strength") == 0) return out.identity("strength is 0");
+    if (in.number("radius") == 0) return out.identity("radius is 0");
+    if (!in.has("depth")) return out.not_called_for("visible", "there is no depth attachment");
+    const bool needs_ambient = in.choice("view") == picture && in.choice("without_ambient") == skip;
+    if (needs_ambient && !in.has("ambient")) {
+        return out.not_called_for("visible",
+                                  "there is no ambient attachment, and only ambient light is occluded "
+                                  "(without_ambient: multiply would darken all light)");
+    }
+    if (largest_radius(in) < smallest_radius) {
+        return out.not_called_for("visible", "even at the near plane the radius is less than 1.3 pixels");
+    }
+    declare_passes(in, out);
+}
+
+constexpr auto ssao = postfx::effect<plan>("ssao")
+                          .about("Ambient occlusion: less ambient light in corners and under things")
+                          .with_parameters(parameters)
+                          .reading(attachments)
+                          .with_levels(levels, medium);
+
+} // namespace
+
+POSTFX_MODULE(&ssao)

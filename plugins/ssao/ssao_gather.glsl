@@ -1,0 +1,124 @@
+#include "ssao_distance.glsl"
+#include "ssao_place.glsl"
+
+// Ground-truth ambient occlusion (Jimenez et al. 2016): planes through the line of sight cut the surface, and on either
+// side of it everything below the highest sample counts as solid. README.md has the model.
+
+// Half of a slice: the direction on the screen [texels], how many texels to go, and in view space the line in which the
+// slice cuts the tangent plane, and the normal divided by its length within the slice.
+struct SsaoHalf {
+    vec2 toward;
+    float reach;
+    vec3 along, over;
+};
+
+// Highest elevation over the tangent plane, as 1 - cos; 0 if nothing rises above it. `slack` [m] is what the depth's own
+// rounding can lift.
+float ssao_highest(SsaoHalf half_slice, vec2 from, vec3 place, float slack, float jitter, float radius, float fade,
+                   sampler2D distances) {
+    vec2 last = vec2(textureSize(distances, 0) - 1);
+    vec2 plane_step = ssao_plane_step(), plane_start = ssao_plane_start();
+    float reach = max(half_slice.reach, 1.0);
+    float highest = 0.0;
+    for (int i = 0; i < SSAO_STEPS; ++i) {
+        float t = (float(i) + jitter) / float(SSAO_STEPS);
+        // Few samples stand closer together near the middle, where what they see fills a larger angle.
+        float away = mix(1.0, reach, SSAO_INTERLEAVED == 1 ? t * t : t);
+        vec2 texel = clamp(floor(from + away * half_slice.toward + 0.5), vec2(0.0), last);
+        float z = texelFetch(distances, ivec2(texel), 0).r;
+        vec3 to_sample = ssao_place(texel * plane_step + plane_start, z) - place;
+        // The texel may lie beside the slice; measured along the tangent plane, a plane's samples are never above it.
+        float x = dot(to_sample, half_slice.along);
+        float y = dot(to_sample, half_slice.over) - slack;
+        float squared = x * x + y * y;
+        float inverse = inversesqrt(max(squared, 1e-36));
+        float weight = clamp((radius - squared * inverse) * fade, 0.0, 1.0);
+        highest = max(highest, y > 0.0 ? (1.0 - x * inverse) * weight : 0.0);
+    }
+    return highest;
+}
+
+// Cosine-weighted share of light that a half of a slice loses to what rises to 1 - cos(elevation) = highest. Of the unit
+// normal: its component towards the eye, the one towards this side, and both divided by its length in the slice.
+float ssao_lost(float highest, float to_eye, float to_side, float cosine, float sine) {
+    if (highest <= 0.0) return 0.0;
+    float cos_up = 1.0 - min(highest, 1.0 + sine); // not beyond the eye
+    float sin_up = sqrt(max(1.0 - cos_up * cos_up, 0.0));
+    float sin_horizon = cosine * cos_up + sine * sin_up; // angles from the line of sight
+    float cos_horizon = cosine * sin_up - sine * cos_up;
+    return 0.5 * (to_eye * (cosine * cosine - sin_horizon * sin_horizon) +
+                  to_side * (acos(cos_up) + cosine * sine + sin_horizon * cos_horizon));
+}
+
+// Texels to go, forward and backward, until the line of sight passes the sphere of influence by: the exact outline of
+// the sphere. relative: its radius over z. step: of the plane at 1 m, per texel.
+vec2 ssao_sphere_reach(vec2 plane, vec2 plane_step, float relative, float radius) {
+    float step_squared = dot(plane_step, plane_step);
+    if (u_frame.orthographic) return vec2(radius * inversesqrt(step_squared));
+    float length_squared = dot(plane, plane) + 1.0;
+    float along = dot(plane, plane_step);
+    float a = length_squared * step_squared - along * along - relative * relative * step_squared;
+    if (a <= 0.0) return vec2(1e9); // the eye is inside, or nearly
+    float middle = relative * relative * along;
+    float root = relative * sqrt(relative * relative * along * along + a * length_squared);
+    return vec2(root + middle, root - middle) / a;
+}
+
+// Texels to go until the border: nothing is known beyond it.
+float ssao_border_reach(vec2 from, vec2 toward, vec2 last) {
+    vec2 room = mix(from, last - from, greaterThan(toward, vec2(0.0)));
+    vec2 steps = room / max(abs(toward), vec2(1e-9));
+    return min(steps.x, steps.y);
+}
+
+// Where a texel's slices and samples begin, both in 0..1. A texel and its mirror image in a 4x4 block have mirrored
+// slices and the same samples; the 16 slices of a block are all different.
+vec2 ssao_phase(ivec2 index) {
+    uint x = uint(index.x), y = uint(index.y);
+    uint rank = ((x & 1u) * 10u) ^ ((x >> 1u & 1u) * 5u) ^ ((y & 1u) * 6u) ^ (y >> 1u & 1u);
+    uint gray = (rank ^ (rank >> 1u)) & 7u;
+    return vec2((float(rank) + 0.5) / 16.0, (float(gray) + 0.5) / 8.0);
+}
+
+// Occlusion of the ambient light, not yet held to 0..1; metres along the view axis.
+vec4 ssao_gather(Pixel pixel, SsaoGatherParams params, sampler2D distances, sampler2D normals) {
+    float z = texelFetch(distances, pixel.index, 0).r;
+    vec3 normal = texelFetch(normals, pixel.index, 0).xyz;
+    if (z == SSAO_NOTHING || normal == vec3(0.0)) return vec4(0.0, z, 0.0, 0.0);
+
+    vec2 from = vec2(pixel.index), last = vec2(textureSize(distances, 0) - 1);
+    vec2 plane_step = ssao_plane_step();
+    vec2 plane = from * plane_step + ssao_plane_start();
+    vec3 place = ssao_place(plane, z);
+    vec3 eye = u_frame.orthographic ? vec3(0.0, 0.0, 1.0) : normalize(vec3(-plane, 1.0));
+    float facing = dot(normal, eye);
+    if (facing < 0.01) normal = normalize(normal + (0.01 - facing) * eye); // shading normals may look away
+    float to_eye = dot(normal, eye);
+    vec3 right = normalize(vec3(1.0, 0.0, 0.0) - eye.x * eye);
+    vec3 up = cross(eye, right);
+
+    // Four roundings of a depth sample near 1, where its float steps are largest: of z [m].
+    float rounding = 2.4e-7 * (z + abs(u_frame.depth_affine.y) * (u_frame.orthographic ? 1.0 : z * z));
+    float fade = 1.0 / (max(params.falloff, 1e-6) * params.radius);
+    vec2 phase = SSAO_INTERLEAVED == 1 ? ssao_phase(pixel.index) : vec2(0.5, 1.0);
+
+    float lost = 0.0;
+    for (int i = 0; i < SSAO_SLICES; ++i) {
+        float angle = (float(i) + phase.x) * (3.14159265 / float(SSAO_SLICES));
+        vec3 side = cos(angle) * right + sin(angle) * up;
+        vec2 toward = normalize((side.xy + (u_frame.orthographic ? vec2(0.0) : plane * side.z)) / plane_step);
+        float to_side = dot(normal, side);
+        float in_slice = inversesqrt(to_eye * to_eye + to_side * to_side);
+        float cosine = to_eye * in_slice, sine = to_side * in_slice;
+        vec3 along = cosine * side - sine * eye;
+        vec2 reach = ssao_sphere_reach(plane, toward * plane_step, params.radius / z, params.radius);
+        float slack = rounding * cosine;
+        SsaoHalf ahead = SsaoHalf(toward, min(reach.x, ssao_border_reach(from, toward, last)), along, normal * in_slice);
+        SsaoHalf behind = SsaoHalf(-toward, min(reach.y, ssao_border_reach(from, -toward, last)), -along, ahead.over);
+        lost += ssao_lost(ssao_highest(ahead, from, place, slack, phase.y, params.radius, fade, distances), to_eye,
+                          to_side, cosine, sine);
+        lost += ssao_lost(ssao_highest(behind, from, place, slack, phase.y, params.radius, fade, distances), to_eye,
+                          -to_side, cosine, -sine);
+    }
+    return vec4(lost / float(SSAO_SLICES), z, 0.0, 0.0);
+}
