@@ -14,8 +14,8 @@ namespace postfx::testing {
 /// What goes into one effect. Absent attachments are left out of the map.
 struct Input {
     Image color; ///< 3 or 4 channels, scene-linear
-    std::map<std::string, Image>
-        attachments = {}; ///< "depth" (1 channel, raw samples), "normal" (3), "emission" (3), ...
+    std::map<std::string, Image> attachments =
+        {}; ///< "depth" (1 channel, raw samples), "normal" (3), "emission" (3), ...
     Camera camera = {};
     double time = 0;
     std::uint32_t frame = 0;

@@ -103,7 +103,8 @@ TEST_CASE("framework and host name no effect") {
     for (const auto& folder : fs::directory_iterator(source / "plugins")) {
         if (folder.is_directory()) effects.push_back(lower(folder.path().filename().string()));
     }
-    for (const char* room : {"framework", "host", "shaders", "cmake", "tests/harness", "tests/fixtures"}) {
+    for (const char* room :
+         {"framework", "host", "shaders", "cmake", "tests/harness", "tests/framework/fixtures"}) {
         for (const auto& entry : fs::recursive_directory_iterator(source / room)) {
             if (!entry.is_regular_file()) continue;
             const std::string text = lower(postfx::testing::file_bytes(entry.path()));

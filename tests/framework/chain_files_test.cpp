@@ -3,6 +3,8 @@
 
 #include "chain_fixture.hpp"
 
+#include <temporary_directory.hpp>
+
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -16,34 +18,25 @@ namespace {
 /// A folder of chain files that goes away with the test.
 class ChainFolder {
 public:
-    ChainFolder() {
-        std::string pattern = (fs::temp_directory_path() / "postfx_chain_test_XXXXXX").string();
-        REQUIRE(mkdtemp(pattern.data()) != nullptr);
-        path_ = pattern;
-    }
-    ~ChainFolder() { fs::remove_all(path_); }
-    ChainFolder(const ChainFolder&) = delete;
-    ChainFolder& operator=(const ChainFolder&) = delete;
-
     fs::path write(const std::string& name, const std::string& text) const {
-        fs::create_directories((path_ / name).parent_path());
-        std::ofstream(path_ / name, std::ios::binary) << text;
-        return path_ / name;
+        fs::create_directories((folder_ / name).parent_path());
+        std::ofstream(folder_ / name, std::ios::binary) << text;
+        return folder_ / name;
     }
-    Chain read(const std::string& name) const { return postfx::read_chain(path_ / name, catalog()); }
+    Chain read(const std::string& name) const { return postfx::read_chain(folder_ / name, catalog()); }
     /// The message with this folder's own path taken out.
     std::string error(const std::string& name) const {
         std::string message = error_of([&] { read(name); });
-        const std::string prefix = path_.string() + "/";
+        const std::string prefix = folder_.path().string() + "/";
         for (std::size_t at = message.find(prefix); at != std::string::npos; at = message.find(prefix)) {
             message.erase(at, prefix.size());
         }
         return message;
     }
-    const fs::path& path() const { return path_; }
+    const fs::path& path() const { return folder_.path(); }
 
 private:
-    fs::path path_;
+    postfx::testing::TemporaryDirectory folder_;
 };
 
 } // namespace

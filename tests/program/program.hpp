@@ -3,6 +3,8 @@
 
 #include <catch2/catch.hpp>
 
+#include <temporary_directory.hpp>
+
 #include <filesystem>
 #include <fstream>
 #include <sstream>
@@ -17,36 +19,6 @@
 
 namespace postfx::testing {
 
-/// A new directory that goes away.
-class Scratch {
-public:
-    Scratch() {
-        std::string name = (std::filesystem::temp_directory_path() / "postfx_test_XXXXXX").string();
-        if (!::mkdtemp(name.data())) throw std::runtime_error("no temporary directory: " + name);
-        path_ = name;
-    }
-    ~Scratch() {
-        std::error_code ignored;
-        std::filesystem::remove_all(path_, ignored);
-    }
-    Scratch(const Scratch&) = delete;
-    Scratch& operator=(const Scratch&) = delete;
-
-    const std::filesystem::path& path() const { return path_; }
-    std::string file(const std::string& name) const { return (path_ / name).string(); }
-
-private:
-    std::filesystem::path path_;
-};
-
-inline std::string text_of(const std::filesystem::path& file) {
-    std::ifstream in(file, std::ios::binary);
-    if (!in) throw std::runtime_error("can't read " + file.string());
-    std::ostringstream text;
-    text << in.rdbuf();
-    return text.str();
-}
-
 struct Outcome {
     int status = -1; ///< of the exit; 128 + the signal when it was killed
     std::string out, err;
@@ -55,8 +27,8 @@ struct Outcome {
 /// Run a command in `directory` and wait. It sees no plugins, data or settings of the user or the test.
 inline Outcome run_command(const std::vector<std::string>& command,
                            const std::filesystem::path& directory = ".") {
-    const Scratch scratch;
-    const std::string out = scratch.file("out"), err = scratch.file("err"), home = scratch.file("home");
+    const TemporaryDirectory scratch;
+    const std::string out = scratch / "out", err = scratch / "err", home = scratch / "home";
     const pid_t child = ::fork();
     if (child < 0) throw std::runtime_error("can't start a process");
     if (child == 0) {
@@ -76,7 +48,8 @@ inline Outcome run_command(const std::vector<std::string>& command,
     }
     int status = 0;
     ::waitpid(child, &status, 0);
-    return {WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status), text_of(out), text_of(err)};
+    return {WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status), file_bytes(out),
+            file_bytes(err)};
 }
 
 /// Run the program that the build made.

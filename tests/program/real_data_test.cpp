@@ -48,12 +48,12 @@ Brightness brightness(const Image& image) {
 TEST_CASE("model files render through the default chain") {
     const std::string model = data(GENERATE("FlightHelmet/FlightHelmet.gltf", "cornell_box/cornell_box.obj"));
     if (model.empty()) return;
-    const Scratch scratch;
-    const Outcome outcome = run_program(
-        {"render", model, "--chain", "cinematic", "--size", "320x180", "-o", scratch.file("model.exr")});
+    const TemporaryDirectory scratch;
+    const Outcome outcome = run_program({"render", model, "--chain", "cinematic", "--size", "320x180", "-o",
+                                         (scratch / "model.exr").string()});
     INFO(outcome.err);
     REQUIRE(outcome.status == 0);
-    const Brightness seen = brightness(read_image(scratch.file("model.exr")).image);
+    const Brightness seen = brightness(read_image((scratch / "model.exr").string()).image);
     CHECK(seen.finite);
     CHECK(seen.mean > 0.02); // lit, and not burnt out: tone mapped light lies in 0..1
     CHECK(seen.mean < 0.7);
@@ -63,13 +63,13 @@ TEST_CASE("model files render through the default chain") {
 TEST_CASE("an EXR with its own Z gets depth of field") {
     const std::string exr = data("images/beachball.0001.exr");
     if (exr.empty()) return;
-    const Scratch scratch;
-    const Outcome outcome =
-        run_program({"apply", "--color", exr, "--depth", exr, "--fov", "35", "--effect",
-                     "depth_of_field: {focus_distance: 5, f_number: 1.4}", "-o", scratch.file("ball.exr")});
+    const TemporaryDirectory scratch;
+    const Outcome outcome = run_program({"apply", "--color", exr, "--depth", exr, "--fov", "35", "--effect",
+                                         "depth_of_field: {focus_distance: 5, f_number: 1.4}", "-o",
+                                         (scratch / "ball.exr").string()});
     INFO(outcome.err);
     REQUIRE(outcome.status == 0);
-    const Image before = read_image(exr).image, after = read_image(scratch.file("ball.exr")).image;
+    const Image before = read_image(exr).image, after = read_image((scratch / "ball.exr").string()).image;
     REQUIRE(after.width == before.width);
     REQUIRE(after.height == before.height);
     const Brightness was = brightness(before), is = brightness(after);
@@ -82,13 +82,13 @@ TEST_CASE("an EXR with its own Z gets depth of field") {
 TEST_CASE("an HDR panorama glows and keeps its energy") {
     const std::string hdr = data("images/night.hdr");
     if (hdr.empty()) return;
-    const Scratch scratch;
-    const Outcome outcome = run_program(
-        {"apply", "--color", hdr, "--effect", "bloom: {intensity: 0.2}", "-o", scratch.file("night.pfm")});
+    const TemporaryDirectory scratch;
+    const Outcome outcome = run_program({"apply", "--color", hdr, "--effect", "bloom: {intensity: 0.2}", "-o",
+                                         (scratch / "night.pfm").string()});
     INFO(outcome.err);
     REQUIRE(outcome.status == 0);
     const Brightness was = brightness(read_image(hdr).image),
-                     is = brightness(read_image(scratch.file("night.pfm")).image);
+                     is = brightness(read_image((scratch / "night.pfm").string()).image);
     CHECK(is.finite);
     CHECK(is.mean == Approx(was.mean).epsilon(0.02)); // what leaves at the border comes back clamped
     CHECK(is.largest < was.largest);

@@ -125,26 +125,28 @@ TEST_CASE("describe tells every effect's declaration") {
 }
 
 TEST_CASE("plugins that are no plugins are told, and the others still work") {
-    const Scratch scratch;
+    const TemporaryDirectory scratch;
     std::ofstream(scratch.path() / "postfx_broken.so") << "no ELF";
     const Outcome outcome = run_program({"list", "effects", "--plugin-dir", scratch.path()});
     CHECK(outcome.status == 0);
     CHECK_FALSE(outcome.out.empty());
     CHECK_THAT(outcome.err, Catch::Contains("postfx_broken.so"));
-    check_refused(run_program({"list", "effects", "--plugin-dir", scratch.file("missing")}), "missing");
+    check_refused(run_program({"list", "effects", "--plugin-dir", (scratch / "missing").string()}),
+                  "missing");
 }
 
 TEST_CASE("schema is printed or written") {
-    const Scratch scratch;
+    const TemporaryDirectory scratch;
     const Outcome printed = run_program({"schema"});
     const Json schema = json_of(printed);
     CHECK_THAT(schema["$schema"].get<std::string>(), Catch::Contains("json-schema.org"));
     for (const std::string& id : effect_ids())
         CHECK_THAT(printed.out, Catch::Contains(Json(id).dump()));
 
-    const std::string file = scratch.file("chain.schema.json");
+    const std::string file = (scratch / "chain.schema.json").string();
     const Outcome written = run_program({"schema", "-o", file});
     CHECK(written.status == 0);
-    CHECK((text_of(file) == printed.out));
-    check_refused(run_program({"schema", "-o", scratch.file("missing/schema.json")}), "missing/schema.json");
+    CHECK((file_bytes(file) == printed.out));
+    check_refused(run_program({"schema", "-o", (scratch / "missing/schema.json").string()}),
+                  "missing/schema.json");
 }

@@ -12,7 +12,7 @@ std::map<std::string, std::string> files_below(const fs::path& folder) {
     std::map<std::string, std::string> files;
     for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder)) {
         if (entry.is_regular_file())
-            files[fs::relative(entry.path(), folder).string()] = text_of(entry.path());
+            files[fs::relative(entry.path(), folder).string()] = file_bytes(entry.path());
     }
     return files;
 }
@@ -20,8 +20,8 @@ std::map<std::string, std::string> files_below(const fs::path& folder) {
 } // namespace
 
 TEST_CASE("docs/reference is up to date") {
-    const Scratch scratch;
-    REQUIRE(run_program({"docs", "--out", scratch.file("reference")}).status == 0);
+    const TemporaryDirectory scratch;
+    REQUIRE(run_program({"docs", "--out", (scratch / "reference").string()}).status == 0);
     const auto fresh = files_below(scratch.path() / "reference");
     const auto committed = files_below(POSTFX_SOURCE_DIRECTORY "/docs/reference");
     for (const auto& [name, text] : fresh) {
@@ -36,9 +36,9 @@ TEST_CASE("docs/reference is up to date") {
 }
 
 TEST_CASE("docs removes pages of effects that are gone, and no others") {
-    const Scratch scratch;
+    const TemporaryDirectory scratch;
     REQUIRE(run_program({"docs", "--out", scratch.path()}).status == 0);
-    const std::string made = text_of(scratch.path() / "README.md");
+    const std::string made = file_bytes(scratch.path() / "README.md");
     std::ofstream(scratch.path() / "effects/gone.md") << made;
     std::ofstream(scratch.path() / "effects/own.md") << "written by hand\n";
     REQUIRE(run_program({"docs", "--out", scratch.path()}).status == 0);

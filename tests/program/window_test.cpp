@@ -32,10 +32,11 @@ Outcome under_display(std::vector<std::string> command) {
 
 TEST_CASE("the window shows what render writes") {
     if (!can_open_windows()) return;
-    const Scratch scratch;
+    const TemporaryDirectory scratch;
     const std::vector<std::string> common = {"cornell", "--chain", "cinematic", "--size", "320x180"};
-    std::vector<std::string> view = {program, "view", "--frames", "1", "-o", scratch.file("view.png")};
-    std::vector<std::string> render = {program, "render", "-q", "--samples", "1", "-o", scratch.file("render.png")};
+    std::vector<std::string> view = {program, "view", "--frames", "1", "-o", (scratch / "view.png").string()};
+    std::vector<std::string> render = {
+        program, "render", "-q", "--samples", "1", "-o", (scratch / "render.png").string()};
     view.insert(view.end(), common.begin(), common.end());
     render.insert(render.end(), common.begin(), common.end());
     const Outcome viewed = under_display(view);
@@ -43,8 +44,8 @@ TEST_CASE("the window shows what render writes") {
     REQUIRE(viewed.status == 0);
     CHECK(viewed.out.find("F12") != std::string::npos); // the keys are told
     REQUIRE(run_command(render).status == 0);
-    const Difference difference =
-        compare(read_image(scratch.file("view.png")).image, read_image(scratch.file("render.png")).image);
+    const Difference difference = compare(read_image((scratch / "view.png").string()).image,
+                                          read_image((scratch / "render.png").string()).image);
     // The same driver, scene, time and noise; GLX may choose another visual but draws into our own targets.
     CHECK(difference.psnr > 50);
 }

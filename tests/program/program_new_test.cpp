@@ -20,7 +20,7 @@ void check_success(const Outcome& outcome) {
 } // namespace
 
 TEST_CASE("new makes a folder under the effect's name") {
-    const Scratch scratch;
+    const TemporaryDirectory scratch;
     const Outcome made = run_program({"new", "film_tint"}, scratch.path());
     check_success(made);
     CHECK(made.err.empty());
@@ -28,18 +28,18 @@ TEST_CASE("new makes a folder under the effect's name") {
     std::set<std::string> files;
     for (const fs::directory_entry& entry : fs::directory_iterator(scratch.path() / "film_tint")) {
         files.insert(entry.path().filename().string());
-        const std::string text = text_of(entry.path());
+        const std::string text = file_bytes(entry.path());
         for (const char* placeholder : {"my_effect", "MyEffect", "MY_EFFECT"})
             CHECK_THAT(text, !Catch::Contains(placeholder));
     }
     CHECK(files
           == std::set<std::string>{"CMakeLists.txt", "README.md", "film_tint.cpp", "film_tint.glsl",
                                    "reference.cpp", "test.cpp"});
-    CHECK_THAT(text_of(scratch.path() / "film_tint/film_tint.glsl"), Catch::Contains("FilmTintParams"));
+    CHECK_THAT(file_bytes(scratch.path() / "film_tint/film_tint.glsl"), Catch::Contains("FilmTintParams"));
 }
 
 TEST_CASE("new refuses names and folders, and makes nothing") {
-    const Scratch scratch;
+    const TemporaryDirectory scratch;
     for (const char* name : {"Tint", "2tint", "film-tint", "film__tint", "film_", "gl_tint", ""}) {
         INFO(name);
         check_refused(run_program({"new", name}, scratch.path()), "can't name an effect");
@@ -54,7 +54,7 @@ TEST_CASE("new refuses names and folders, and makes nothing") {
 }
 
 TEST_CASE("new warns when there is such an effect already") {
-    const Scratch scratch;
+    const TemporaryDirectory scratch;
     const std::string taken = Json::parse(run_program({"list", "effects", "--json"}).out).at(0).at("id");
     const Outcome made = run_program({"new", taken, "--dir", "mine/"}, scratch.path());
     check_success(made);
@@ -63,7 +63,7 @@ TEST_CASE("new warns when there is such an effect already") {
 }
 
 TEST_CASE("the new effect builds out of tree, passes its tests and is found", "[slow]") {
-    const Scratch scratch;
+    const TemporaryDirectory scratch;
     const auto run = [&](const std::vector<std::string>& command) {
         return run_command(command, scratch.path());
     };
@@ -82,8 +82,8 @@ TEST_CASE("the new effect builds out of tree, passes its tests and is found", "[
 }
 
 TEST_CASE("an installation finds its own effects and data", "[slow]") {
-    const Scratch scratch;
-    const std::string prefix = scratch.file("prefix");
+    const TemporaryDirectory scratch;
+    const std::string prefix = (scratch / "prefix").string();
     check_success(run_command({"cmake", "--install", POSTFX_BUILD_DIRECTORY, "--prefix", prefix}));
     const std::string program = prefix + "/bin/postfx";
     for (const auto& [what, key] : {std::pair{"effects", "module"}, std::pair{"chains", "path"}}) {

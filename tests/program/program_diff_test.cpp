@@ -18,19 +18,19 @@ namespace {
 constexpr int width = 16, height = 12;
 
 /// A grey PNG of those 8-bit codes with one pixel of another code.
-std::string png(const Scratch& scratch, const std::string& name, int channels, std::uint8_t code,
+std::string png(const TemporaryDirectory& scratch, const std::string& name, int channels, std::uint8_t code,
                 std::uint8_t odd) {
     std::vector<std::uint8_t> codes(std::size_t(width) * height * channels, code);
     // Column 3, second row from the bottom.
     for (int c = 0; c < channels; ++c)
         codes[(std::size_t(width) + 3) * channels + c] = odd;
-    write_png(scratch.file(name), width, height, channels, codes);
-    return scratch.file(name);
+    write_png((scratch / name).string(), width, height, channels, codes);
+    return (scratch / name).string();
 }
 
-std::string pfm(const Scratch& scratch, const std::string& name, const Image& image) {
-    write_image(scratch.file(name), image);
-    return scratch.file(name);
+std::string pfm(const TemporaryDirectory& scratch, const std::string& name, const Image& image) {
+    write_image((scratch / name).string(), image);
+    return (scratch / name).string();
 }
 
 Json diff_json(const std::string& a, const std::string& b, int expected_status) {
@@ -43,7 +43,7 @@ Json diff_json(const std::string& a, const std::string& b, int expected_status) 
 } // namespace
 
 TEST_CASE("diff of equal pictures") {
-    const Scratch scratch;
+    const TemporaryDirectory scratch;
     const std::string a = png(scratch, "a.png", 3, 100, 100), b = png(scratch, "b.png", 3, 100, 100);
     const Json difference = diff_json(a, b, 0);
     CHECK(difference["max_abs"] == 0);
@@ -56,7 +56,7 @@ TEST_CASE("diff of equal pictures") {
 }
 
 TEST_CASE("diff of 8-bit pictures counts codes") {
-    const Scratch scratch;
+    const TemporaryDirectory scratch;
     const std::string a = png(scratch, "a.png", 3, 100, 100), b = png(scratch, "b.png", 3, 100, 151);
     const Json difference = diff_json(a, b, 1);
     // 51 codes are a fifth; one float32 rounding of each code / 255.
@@ -73,7 +73,7 @@ TEST_CASE("diff of 8-bit pictures counts codes") {
 }
 
 TEST_CASE("diff holds pictures to bounds") {
-    const Scratch scratch;
+    const TemporaryDirectory scratch;
     const std::string a = png(scratch, "a.png", 3, 100, 100), b = png(scratch, "b.png", 3, 100, 151);
     const auto status = [&](std::vector<std::string> bounds) {
         bounds.insert(bounds.begin(), {"diff", a, b});
@@ -88,14 +88,14 @@ TEST_CASE("diff holds pictures to bounds") {
 }
 
 TEST_CASE("diff leaves out alpha that only one picture has, and says so") {
-    const Scratch scratch;
+    const TemporaryDirectory scratch;
     const std::string a = png(scratch, "a.png", 3, 100, 100), b = png(scratch, "b.png", 4, 100, 100);
     const Json difference = diff_json(a, b, 0);
     CHECK_THAT(difference["notes"].dump(), Catch::Contains("alpha"));
 }
 
 TEST_CASE("diff compares float pictures as linear values") {
-    const Scratch scratch;
+    const TemporaryDirectory scratch;
     Image image = constant(width, height, {2.0f, 3.0f, 4.0f});
     const std::string a = pfm(scratch, "a.pfm", image);
     image.at(5, 0, 2) = 4.5f;
@@ -114,12 +114,12 @@ TEST_CASE("diff compares float pictures as linear values") {
 }
 
 TEST_CASE("diff writes the difference") {
-    const Scratch scratch;
+    const TemporaryDirectory scratch;
     const std::string a = png(scratch, "a.png", 3, 100, 100), b = png(scratch, "b.png", 3, 100, 110);
     const auto written = [&](const std::string& name, std::vector<std::string> more) {
-        more.insert(more.begin(), {"diff", a, b, "-o", scratch.file(name)});
+        more.insert(more.begin(), {"diff", a, b, "-o", (scratch / name).string()});
         REQUIRE(run_program(more).status == 1);
-        return read_data(scratch.file(name));
+        return read_data((scratch / name).string());
     };
     const Image shown = written("shown.png", {});
     CHECK(shown.at(3, 1, 0) == 1.0f); // the largest difference is white
@@ -130,11 +130,11 @@ TEST_CASE("diff writes the difference") {
 }
 
 TEST_CASE("diff refuses what can't be compared") {
-    const Scratch scratch;
+    const TemporaryDirectory scratch;
     const std::string a = png(scratch, "a.png", 3, 100, 100);
     const std::string small = pfm(scratch, "small.pfm", constant(4, 4, {1.0f, 1.0f, 1.0f}));
     check_refused(run_program({"diff", a, small}), "4 x 4");
-    check_refused(run_program({"diff", a, scratch.file("missing.png")}), "missing.png");
-    check_refused(run_program({"diff", a, a, "-o", scratch.file("difference.txt")}), "difference.txt");
+    check_refused(run_program({"diff", a, (scratch / "missing.png").string()}), "missing.png");
+    check_refused(run_program({"diff", a, a, "-o", (scratch / "difference.txt").string()}), "difference.txt");
     check_refused(run_program({"diff", a}), "B");
 }

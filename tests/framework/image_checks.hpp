@@ -1,7 +1,7 @@
 // What the tests of image files share.
 #pragma once
 
-#include "harness/temporary_directory.hpp"
+#include "temporary_directory.hpp"
 
 #include <image/files.hpp>
 #include <postfx/error.hpp>

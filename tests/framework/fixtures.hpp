@@ -1,4 +1,4 @@
-// The fixture effects of tests/fixtures, for tests of the framework.
+// The fixture effects of tests/framework/fixtures, for tests of the framework.
 #pragma once
 
 #include <postfx/catalog.hpp>
@@ -8,7 +8,7 @@
 
 namespace postfx::testing {
 
-/// The module of tests/fixtures/<name>.
+/// The module of tests/framework/fixtures/<name>.
 inline std::filesystem::path fixture(const std::string& name) {
     return std::filesystem::path(POSTFX_FIXTURES) / ("postfx_fixture_" + name + ".so");
 }

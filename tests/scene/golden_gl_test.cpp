@@ -48,6 +48,6 @@ TEST_CASE("the scenes look as they did") {
     const std::string scene = GENERATE("night_drive", "cornell", "cornell_glow");
     // Another rasteriser covers edge pixels differently, and rounds rgba16f differently by a code or two elsewhere: 3
     // codes are allowed anywhere, more in 2 % of the pixels. One lamp, tree or effect less moves more than that.
-    CHECK_NOTHROW(check_golden(source + "/tests", scene, picture_of(scene, "cinematic", 320, 180), 3, 0.02,
-                               "edge pixels and half-float rounding of other drivers"));
+    CHECK_NOTHROW(check_golden(source + "/tests/scene", scene, picture_of(scene, "cinematic", 320, 180), 3,
+                               0.02, "edge pixels and half-float rounding of other drivers"));
 }

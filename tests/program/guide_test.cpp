@@ -47,10 +47,10 @@ public:
         }
         build();
         // The harness looks for effects once, when it is first used.
-        ::setenv(
-            "POSTFX_PLUGIN_PATH",
-            (scratch_.file("build/postfx_plugins") + ":" POSTFX_BUILD_DIRECTORY "/postfx_plugins").c_str(),
-            1);
+        ::setenv("POSTFX_PLUGIN_PATH",
+                 ((scratch_ / "build/postfx_plugins").string() + ":" POSTFX_BUILD_DIRECTORY "/postfx_plugins")
+                     .c_str(),
+                 1);
     }
 
     const std::set<std::string>& effects() const { return effects_; }
@@ -70,7 +70,7 @@ private:
         check_success(run_command({"cmake", "--build", "build"}, scratch_.path()));
     }
 
-    Scratch scratch_;
+    TemporaryDirectory scratch_;
     std::set<std::string> effects_;
 };
 
@@ -105,7 +105,7 @@ TEST_CASE("guide: the effects are found, and say what the page says of them") {
     CHECK(catalog.find("soft_focus")->levels.size() == 2);
 
     // "At most 40 lines of C++" is what the project promises for a pointwise effect.
-    const std::string source = text_of(guide().file("contrast/contrast.cpp"));
+    const std::string source = file_bytes(guide().file("contrast/contrast.cpp"));
     CHECK(std::count(source.begin(), source.end(), '\n') <= 40);
 }
 

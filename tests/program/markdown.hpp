@@ -22,7 +22,7 @@ struct CodeBlock {
 };
 
 inline std::vector<CodeBlock> code_blocks(const std::filesystem::path& page) {
-    std::istringstream rows(text_of(page));
+    std::istringstream rows(file_bytes(page));
     std::vector<CodeBlock> blocks;
     bool inside = false;
     int line = 0;

@@ -167,7 +167,8 @@ TEST_CASE("Writing a PNG clamps, and NaN is black") {
 
 TEST_CASE("JPEG") {
     const TemporaryDirectory directory;
-    const auto file = std::filesystem::path(POSTFX_SOURCE_DIRECTORY) / "tests/images/two_colors.jpg";
+    const auto file =
+        std::filesystem::path(POSTFX_SOURCE_DIRECTORY) / "tests/framework/images/two_colors.jpg";
     const ImageFile jpeg = read_image(file);
     CHECK(jpeg.was_8bit);
     REQUIRE((jpeg.image.width == 16 && jpeg.image.height == 8 && jpeg.image.channels == 3));
