@@ -1,11 +1,11 @@
 // postfx apply: a chain on images that someone else made.
 #include "command.hpp"
 #include "depth_input.hpp"
+#include "gl_session.hpp"
 #include "options.hpp"
 #include "picture.hpp"
 #include "report_output.hpp"
 
-#include <gl/context.hpp>
 #include <gl/objects.hpp>
 #include <image/files.hpp>
 
@@ -80,7 +80,7 @@ public:
             facts.attachments.push_back(name);
         images["color"] = widened(color.image);
 
-        const gl::HeadlessContext context;
+        const GlSession session;
         ChainRunner runner(std::move(chain), facts);
         std::map<std::string, gl::Texture> uploaded;
         Textures textures;

@@ -1,11 +1,11 @@
 // postfx bench: what chains cost, measured alternately in one run and told in copy passes.
 #include "command.hpp"
+#include "gl_session.hpp"
 #include "options.hpp"
 #include "picture.hpp"
 #include "scene_input.hpp"
 
 #include <gl/clock.hpp>
-#include <gl/context.hpp>
 #include <gl/objects.hpp>
 #include <image/metrics.hpp>
 
@@ -129,7 +129,7 @@ public:
         facts_ =
             scene_options_.facts(scene, scene_options_.time(), linear_ ? Output::linear : Output::display);
         facts_.working_format = *format_by_name(format_);
-        const gl::HeadlessContext context;
+        const GlSession session;
         SceneRenderer renderer(scene);
         make_runners(catalog);
         const std::vector<std::string> wanted = wanted_attachments();
@@ -140,7 +140,7 @@ public:
 
         std::vector<Case> cases = make_cases(textures, draw_scene);
         measure(cases);
-        tell(cases, gl::check_clock(), context.device());
+        tell(cases, gl::check_clock(), session.device());
         return Status::success;
     }
 

@@ -1,11 +1,11 @@
 // postfx render: a scene through a chain to a picture or a numbered sequence.
 #include "command.hpp"
+#include "gl_session.hpp"
 #include "options.hpp"
 #include "picture.hpp"
 #include "report_output.hpp"
 #include "scene_input.hpp"
 
-#include <gl/context.hpp>
 #include <gl/objects.hpp>
 #include <image/files.hpp>
 
@@ -71,7 +71,7 @@ public:
         facts.working_format = *format_by_name(working_);
         check_parent(output_);
 
-        const gl::HeadlessContext context;
+        const GlSession session;
         ChainRunner runner(std::move(chain), facts);
         SceneRenderer renderer(scene, {.samples = samples_});
         ProgressBar progress("rendering", frames_);

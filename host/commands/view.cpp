@@ -1,15 +1,14 @@
 // postfx view: the chain live in a window.
 #include "command.hpp"
+#include "gl_session.hpp"
 #include "options.hpp"
 #include "picture.hpp"
-#include "resources.hpp"
 #include "scene_input.hpp"
 
 #include "window/fly_camera.hpp"
 #include "window/window.hpp"
 
 #include <gl/clock.hpp>
-#include <gl/context.hpp>
 #include <gl/objects.hpp>
 
 #define GLFW_INCLUDE_NONE
@@ -90,12 +89,13 @@ public:
         if (!output_.empty() && output_for(output_) != Output::display) {
             throw Error(Place{.file = output_}, "the window's picture is for display: name a .png");
         }
-        Window window(facts.width, facts.height, "postfx", false);
+        Window window(facts.width, facts.height, "postfx", debug_build);
         ChainRunner runner(std::move(chain), facts);
         SceneRenderer renderer(scene);
         fmt::print("{}", help);
         loop(window, runner, renderer, scene);
         if (!output_.empty()) write_picture(runner, output_, false);
+        tell_debug_messages();
         return Status::success;
     }
 

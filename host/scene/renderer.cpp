@@ -245,7 +245,6 @@ SceneFrame SceneRenderer::render(int width, int height, double time, const std::
     s.prepare(width, height, wanted);
     s.scene.place_nodes(time, s.nodes);
     s.frame.camera = drawable(camera ? camera->camera : s.scene.camera_at(time, s.nodes));
-    s.frame.focus_distance = s.scene.camera.focus_distance;
 
     // Depth runs from 1 at the near plane to 0 at infinity, for shadow maps too.
     glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);

@@ -32,7 +32,6 @@ struct SceneAttachment {
 struct SceneFrame {
     std::vector<SceneAttachment> attachments; ///< "color", "depth", then the others that were wanted
     Camera camera;                            ///< as drawn
-    std::optional<double> focus_distance;     ///< metres, what the scene suggests
     std::size_t draws = 0, triangles = 0;     ///< of the picture, without shadow maps
 
     /// 0 when there is none of that name.

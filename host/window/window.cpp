@@ -35,6 +35,7 @@ Window::Window(int width, int height, const std::string& title, bool debug) {
     }
     glfwMakeContextCurrent(window_);
     gl::load_functions(glfwGetProcAddress);
+    if (debug) gl::enable_debug_output();
     glfwSwapInterval(1);
     glfwSetWindowUserPointer(window_, this);
     glfwSetKeyCallback(window_, [](GLFWwindow* window, int key, int, int action, int) {
