@@ -38,7 +38,8 @@ void DepthOptions::declare(CLI::App& app) {
            "--projection", projection_,
            "OpenGL projection matrix of window depth instead of near, far and fov: 16 numbers, column by "
            "column")
-        ->expected(16);
+        ->expected(16)
+        ->default_str("");
     app.add_option("--fov", vertical_fov_, "Vertical field of view [degrees] (default 45)")
         ->check(CLI::Range(0.1, 179.0));
     app.add_option("--focal-length", focal_length_, "Instead of --fov: focal length [mm]")

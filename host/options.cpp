@@ -49,7 +49,7 @@ Chain ChainOptions::read(const Catalog& catalog) const {
 }
 
 Chain read_chain_named(const std::string& name_or_path, const Catalog& catalog) {
-    return read_chain(find_config("chains", name_or_path), catalog, {data_directory() / "configs/chains"});
+    return read_chain(find_chain(name_or_path), catalog, {data_directory() / "configs/chains"});
 }
 
 Size parse_size(const std::string& text) {

@@ -25,25 +25,24 @@ fs::path data_directory() {
                             candidates.front().string(), candidates.back().string()));
 }
 
-std::vector<std::string> config_names(const std::string& kind) {
+std::vector<std::string> chain_names() {
     std::vector<std::string> names;
-    for (const fs::directory_entry& entry : fs::directory_iterator(data_directory() / "configs" / kind)) {
+    for (const fs::directory_entry& entry : fs::directory_iterator(data_directory() / "configs/chains")) {
         if (entry.path().extension() == ".yaml") names.push_back(entry.path().stem().string());
     }
     std::sort(names.begin(), names.end());
     return names;
 }
 
-fs::path find_config(const std::string& kind, const std::string& name_or_path) {
+fs::path find_chain(const std::string& name_or_path) {
     if (fs::is_regular_file(name_or_path)) return name_or_path;
     const bool is_path =
         name_or_path.find('/') != std::string::npos || fs::path(name_or_path).has_extension();
     if (is_path) throw Error(Place{.file = name_or_path}, "no such file");
-    const fs::path named = data_directory() / "configs" / kind / (name_or_path + ".yaml");
+    const fs::path named = data_directory() / "configs/chains" / (name_or_path + ".yaml");
     if (fs::is_regular_file(named)) return named;
-    const std::string singular = kind.substr(0, kind.size() - 1);
-    throw Error(fmt::format("no {} \"{}\"{} (postfx list {} tells them all)", singular, name_or_path,
-                            did_you_mean(name_or_path, config_names(kind)), kind));
+    throw Error(fmt::format("no chain \"{}\"{} (postfx list chains tells them all)", name_or_path,
+                            did_you_mean(name_or_path, chain_names())));
 }
 
 fs::path cache_directory() {

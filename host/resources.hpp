@@ -11,11 +11,11 @@ namespace postfx::host {
 /// installed program, else the source tree that the program was built from. Throws Error when none is there.
 std::filesystem::path data_directory();
 
-/// Names of the YAML files in configs/<kind>/, sorted; kind is "chains" or "scenes".
-std::vector<std::string> config_names(const std::string& kind);
+/// Names of the chains in configs/chains/, sorted.
+std::vector<std::string> chain_names();
 
-/// A path that exists as it is, or a name in configs/<kind>/. Throws Error with the nearest name.
-std::filesystem::path find_config(const std::string& kind, const std::string& name_or_path);
+/// A path that exists as it is, or the file of a name in configs/chains/. Throws Error with the nearest name.
+std::filesystem::path find_chain(const std::string& name_or_path);
 
 /// Where programs and other things that can be made again are kept: $XDG_CACHE_HOME/postfx or
 /// ~/.cache/postfx; empty when there is no home.

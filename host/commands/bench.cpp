@@ -102,12 +102,14 @@ public:
         app.add_option("--chain", chains_,
                        "Chain to measure, by name or file (repeatable; default cinematic)")
             ->type_name("CHAIN")
+            ->default_str("")
             ->allow_extra_args(false);
         app.add_option(
                "--against", rivals_,
                "A whole fragment shader to measure beside them; it reads u_color (binding 0, or 1 for linear "
                "filtering) and writes location 0 (repeatable)")
             ->type_name("GLSL")
+            ->default_str("")
             ->allow_extra_args(false);
         app.add_flag("--unfused", unfused_, "Measure every chain without fusion as well");
         app.add_flag("--passes", passes_, "Tell every pass of the chains as well");

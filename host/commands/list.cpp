@@ -5,6 +5,8 @@
 #include "resources.hpp"
 #include "text_table.hpp"
 
+#include "scene/scene.hpp"
+
 #include <postfx/error.hpp>
 
 #include <fmt/format.h>
@@ -47,7 +49,7 @@ public:
             throw Error(fmt::format("nothing called \"{}\" to list{} (effects, scenes or chains)", what_,
                                     did_you_mean(what_, kinds)));
         }
-        const Json items = what_ == "effects" ? effects() : configs();
+        const Json items = what_ == "effects" ? effects() : what_ == "scenes" ? scenes() : chains();
         if (json_) {
             fmt::print("{}\n", items.dump(2));
         } else {
@@ -70,11 +72,19 @@ private:
         return items;
     }
 
-    Json configs() const {
+    static Json chains() {
         Json items = Json::array();
-        for (const std::string& name : config_names(what_)) {
-            const std::filesystem::path file = find_config(what_, name);
+        for (const std::string& name : chain_names()) {
+            const std::filesystem::path file = find_chain(name);
             items.push_back({{"id", name}, {"help", first_sentence(file)}, {"path", file.string()}});
+        }
+        return items;
+    }
+
+    static Json scenes() {
+        Json items = Json::array();
+        for (const SceneEntry& scene : list_scenes(data_directory() / "configs/scenes")) {
+            items.push_back({{"id", scene.name}, {"help", scene.description}, {"path", scene.file.string()}});
         }
         return items;
     }

@@ -49,6 +49,7 @@ public:
                "Write attachments too: depth=FILE,normal=FILE,... (color, depth, normal, emission, ambient); "
                "depth in metres along the view axis, 0 = nothing there")
             ->type_name("NAME=FILE")
+            ->default_str("")
             ->delimiter(',');
         app.add_option("--working", working_, "Format of working targets")
             ->check(CLI::IsMember({"rgba16f", "rgba32f"}))

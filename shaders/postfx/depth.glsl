@@ -27,10 +27,10 @@ vec3 postfx_view_position(vec2 uv, float depth) {
     return vec3(u_frame.orthographic ? plane : plane * z, -z);
 }
 
-// Where the pixel's ray crosses the plane 1 m before the camera (perspective), or lies beside the axis (orthographic) [m].
-// From integers: mirrored pixels have mirrored values to the last bit, and the centre has exactly 0.
+// Where the pixel's ray crosses the plane 1 m before the camera (perspective), or lies beside the axis (parallel) [m].
+// `pixel` is of a target of the picture's size. Mirrored pixels have mirrored values to the last bit, the centre 0.
 vec2 postfx_view_plane(Pixel pixel) {
-    return vec2(2 * pixel.index + 1 - pixel.size) / vec2(pixel.size) * u_frame.half_extent;
+    return (2.0 * pixel.position - u_frame.size) * (u_frame.inverse_size * u_frame.half_extent);
 }
 
 // Unit vector from the camera towards the point seen at uv, in view space.

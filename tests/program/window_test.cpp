@@ -50,6 +50,35 @@ TEST_CASE("the window shows what render writes") {
     CHECK(difference.psnr > 50);
 }
 
+TEST_CASE("keys toggle effects, help, save a picture, pause and leave") {
+    if (!can_open_windows()) return;
+    if (std::system("command -v xdotool > /dev/null 2>&1") != 0) {
+        std::cout << "skipped: xdotool is not installed (package xdotool)\n";
+        return;
+    }
+    const TemporaryDirectory scratch;
+    // Keys reach a window that has the focus; without a window manager somebody has to give it.
+    const std::string script =
+        program
+        + " view cornell --size 160x90 & "
+          "window=$(xdotool search --sync --onlyvisible --name postfx | head -n 1); "
+          "xdotool windowfocus --sync $window; "
+          "for key in h 2 2 p F12 Escape; do xdotool key $key; sleep 0.5; done; wait $!";
+    const Outcome outcome =
+        run_command({"xvfb-run", "-a", "-s", "-screen 0 800x600x24", "timeout", "60", "sh", "-c", script},
+                    scratch.path());
+    INFO(outcome.out << outcome.err);
+    REQUIRE(outcome.status == 0);
+    const std::size_t first_help = outcome.out.find("F12");
+    CHECK(outcome.out.find("F12", first_help + 1) != std::string::npos);
+    const std::size_t off = outcome.out.find("bloom is off"), on = outcome.out.find("bloom is on");
+    REQUIRE(off != std::string::npos);
+    CHECK(on > off);
+    CHECK(on != std::string::npos);
+    CHECK_THAT(outcome.out, Catch::Contains("wrote postfx_0000.png"));
+    CHECK(read_image(scratch / "postfx_0000.png").image.width == 160);
+}
+
 TEST_CASE("without a display the window says what to do") {
     const Outcome outcome =
         run_command({"env", "-u", "DISPLAY", "-u", "WAYLAND_DISPLAY", program, "view", "cornell"});
