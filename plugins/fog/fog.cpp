@@ -4,12 +4,12 @@
 namespace {
 
 constexpr postfx::Parameter parameters[] = {
-    postfx::number("density", 0.012)
+    postfx::number("density", 0.02)
         .range(0, 1)
         .in_unit("1/m")
         .identity_at(0)
         .about("Share of the light lost per metre at the base height; 3.9 / density is how far one sees"),
-    postfx::number("height_falloff", 0.08)
+    postfx::number("height_falloff", 0.04)
         .range(0, 10)
         .in_unit("1/m")
         .about("How fast the fog thins out upwards, by e per 1 / height_falloff; 0: the same everywhere"),
@@ -17,14 +17,16 @@ constexpr postfx::Parameter parameters[] = {
         .range(-100000, 100000)
         .in_unit("m")
         .about("Height in the world at which the fog has its density"),
-    postfx::color("color", 0.05, 0.06, 0.08).range(0, 1000).about("Light that the fog scatters to the eye"),
+    postfx::color("color", 0.045, 0.055, 0.08).range(0, 1000).about("Light that the fog scatters to the eye"),
     postfx::number("start", 0).range(0, 1000000).in_unit("m").about("There is no fog up to this distance"),
     postfx::number("max_opacity", 1)
         .range(0, 1)
         .identity_at(0)
         .about("Fog covers no more than this share, however far one looks"),
-    postfx::toggle("sky", true)
-        .about("Fog also lies before the sky, at infinity: above the horizon as much as the falloff leaves"),
+    postfx::toggle("sky", false)
+        .constant()
+        .about("Fog lies before the sky too, which then fades out above the horizon as the falloff says; "
+               "painted skies often have haze already"),
 };
 constexpr const char* attachments[] = {"depth"};
 
@@ -32,7 +34,7 @@ constexpr postfx_level levels[] = {
     postfx::level("classic",
                   "constant density along the view axis: the same point is fogged less at the edge"),
     postfx::level("low",
-                  "height fog in its usual form: off by up to 7e-4 near level rays, more below the fog"),
+                  "height fog in its usual form: off by up to 7e-4 near level rays, lost from high above"),
     postfx::level("medium", "exact up to rounding; higher levels would be the same shader"),
 };
 constexpr const char* sources[] = {"fog_classic.glsl", "fog_low.glsl", "fog.glsl"};
@@ -42,7 +44,10 @@ void plan(const postfx::Request& in, postfx::Builder& out) {
     if (in.number("density") == 0) return out.identity("density is 0");
     if (in.number("max_opacity") == 0) return out.identity("max_opacity is 0");
     if (!in.has("depth")) return out.not_called_for("visible", "there is no depth attachment to fog by");
-    out.compose(sources[in.level()]).reads("depth", out.attachment("depth"), "nearest");
+    out.compose(sources[in.level()])
+        .reads("depth", out.attachment("depth"), "nearest")
+        .constant("FOG_PARALLEL", in.camera().orthographic ? 1 : 0)
+        .constant("FOG_HAS_START", in.number("start") > 0 ? 1 : 0);
 }
 
 constexpr auto fog = postfx::effect<plan>("fog")

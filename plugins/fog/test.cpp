@@ -59,7 +59,7 @@ Input white(int width, int height, const Camera& camera, const std::function<dou
             .camera = camera};
 }
 Values green(Values values) {
-    values.insert({{"color.0", 0}, {"color.1", 1}, {"color.2", 0}});
+    values.insert({{"color.0", 0}, {"color.1", 1}, {"color.2", 0}, {"sky", 1}});
     return values;
 }
 

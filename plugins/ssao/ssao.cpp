@@ -31,7 +31,7 @@ struct Gather {
     int block;        ///< one texel for every block x block pixels
     int slices;       ///< planes through the line of sight
     int steps;        ///< samples on either side of it, per slice
-    bool interleaved; ///< 4x4 texels look along different slices, and are averaged by the denoiser
+    bool interleaved; ///< 3x3 texels look along different slices, and are averaged by the denoiser
 };
 
 enum LevelIndex { low, medium, high, ultra, reference, classic };
@@ -44,7 +44,7 @@ constexpr postfx_level levels[] = {
     postfx::level("classic", "share of 80 pixels around that are nearer; darkens slopes"),
 };
 constexpr Gather gathers[] = {
-    {3, 1, 4, true}, {2, 2, 4, true}, {1, 2, 6, true}, {1, 4, 12, true}, {1, 24, 64, false}};
+    {3, 1, 4, true}, {2, 1, 4, true}, {1, 2, 6, true}, {1, 4, 12, true}, {1, 24, 64, false}};
 
 /// Below this the sphere of influence [pixels] lies within a pixel's nearest neighbours.
 constexpr double smallest_radius = 1.3;
@@ -93,7 +93,7 @@ postfx::PlanImage declare_gather(const postfx::Request& in, postfx::Builder& out
                                            .sized(width, height);
     if (!gather.interleaved) return gathered;
     return out.pass("denoise", "ssao_denoise.glsl")
-        .reads("gathered", gathered, "nearest")
+        .reads("occlusion", gathered, "nearest")
         .reads("normals", normals, "nearest")
         .constant("SSAO_BLOCK", gather.block)
         .format("rg32f")

@@ -1,48 +1,40 @@
 #include "ssao_distance.glsl"
 #include "ssao_place.glsl"
 
-// Ground-truth ambient occlusion (Jimenez et al. 2016): planes through the line of sight cut the surface, and on either
-// side of it everything below the highest sample counts as solid. README.md has the model.
+// Ground-truth ambient occlusion (Jimenez et al. 2016): planes through the line of sight cut the surface, and on
+// either side of it everything below the highest sample counts as solid. README.md has the model.
 
-// Half of a slice: the direction on the screen [texels], how many texels to go, and in view space the line in which the
-// slice cuts the tangent plane, and the normal divided by its length within the slice.
-struct SsaoHalf {
-    vec2 toward;
-    float reach;
-    vec3 along, over;
-};
-
-// Highest elevation over the tangent plane, as 1 - cos; 0 if nothing rises above it. `slack` [m] is what the depth's own
-// rounding can lift.
-float ssao_highest(SsaoHalf half_slice, vec2 from, vec3 place, float slack, float jitter, float radius, float fade,
-                   sampler2D distances) {
+// Highest elevation over the tangent plane that the surface has on one side of a slice, as 1 - cos, at most 1; 0 if
+// nothing rises above it. toward: step on the screen [texels]; reach: how many; over: the normal divided by its
+// length within the slice; slack [m]: what the depth's own rounding can lift.
+float ssao_highest(vec2 from, vec2 toward, float reach, float jitter, vec3 place, vec3 over, float slack,
+                   float radius, float fade, sampler2D distances) {
     vec2 last = vec2(textureSize(distances, 0) - 1);
     vec2 plane_step = ssao_plane_step(), plane_start = ssao_plane_start();
-    float reach = max(half_slice.reach, 1.0);
     float highest = 0.0;
     for (int i = 0; i < SSAO_STEPS; ++i) {
         float t = (float(i) + jitter) / float(SSAO_STEPS);
         // Few samples stand closer together near the middle, where what they see fills a larger angle.
-        float away = mix(1.0, reach, SSAO_INTERLEAVED == 1 ? t * t : t);
-        vec2 texel = clamp(floor(from + away * half_slice.toward + 0.5), vec2(0.0), last);
+        float away = mix(1.0, max(reach, 1.0), SSAO_INTERLEAVED == 1 ? t * t : t);
+        vec2 texel = clamp(floor(from + away * toward + 0.5), vec2(0.0), last);
         float z = texelFetch(distances, ivec2(texel), 0).r;
         vec3 to_sample = ssao_place(texel * plane_step + plane_start, z) - place;
-        // The texel may lie beside the slice; measured along the tangent plane, a plane's samples are never above it.
-        float x = dot(to_sample, half_slice.along);
-        float y = dot(to_sample, half_slice.over) - slack;
-        float squared = x * x + y * y;
+        // The texel may lie beside the slice; measured from the tangent plane, a plane's samples are never above it.
+        float height = dot(to_sample, over) - slack;
+        float squared = dot(to_sample, to_sample);
         float inverse = inversesqrt(max(squared, 1e-36));
         float weight = clamp((radius - squared * inverse) * fade, 0.0, 1.0);
-        highest = max(highest, y > 0.0 ? (1.0 - x * inverse) * weight : 0.0);
+        float lift = 1.0 - sqrt(max(squared - height * height, 0.0)) * inverse;
+        highest = max(highest, height > 0.0 ? lift * weight : 0.0);
     }
     return highest;
 }
 
-// Cosine-weighted share of light that a half of a slice loses to what rises to 1 - cos(elevation) = highest. Of the unit
-// normal: its component towards the eye, the one towards this side, and both divided by its length in the slice.
+// Cosine-weighted share of light that a half of a slice loses to what rises to 1 - cos(elevation) = highest. Of the
+// unit normal: its component towards the eye, the one towards this side, and both divided by its length in the slice.
 float ssao_lost(float highest, float to_eye, float to_side, float cosine, float sine) {
     if (highest <= 0.0) return 0.0;
-    float cos_up = 1.0 - min(highest, 1.0 + sine); // not beyond the eye
+    float cos_up = 1.0 - min(highest, 1.0 + sine); // not beyond the line of sight
     float sin_up = sqrt(max(1.0 - cos_up * cos_up, 0.0));
     float sin_horizon = cosine * cos_up + sine * sin_up; // angles from the line of sight
     float cos_horizon = cosine * sin_up - sine * cos_up;
@@ -71,13 +63,11 @@ float ssao_border_reach(vec2 from, vec2 toward, vec2 last) {
     return min(steps.x, steps.y);
 }
 
-// Where a texel's slices and samples begin, both in 0..1. A texel and its mirror image in a 4x4 block have mirrored
-// slices and the same samples; the 16 slices of a block are all different.
+// Where a texel's slices and samples begin, both in 0..1: every 3x3 texels have 9 different ones of either, in pairs
+// that fill the square evenly (the two digits to base 3 and, for the samples, the same in reverse).
 vec2 ssao_phase(ivec2 index) {
-    uint x = uint(index.x), y = uint(index.y);
-    uint rank = ((x & 1u) * 10u) ^ ((x >> 1u & 1u) * 5u) ^ ((y & 1u) * 6u) ^ (y >> 1u & 1u);
-    uint gray = (rank ^ (rank >> 1u)) & 7u;
-    return vec2((float(rank) + 0.5) / 16.0, (float(gray) + 0.5) / 8.0);
+    int a = (index.x + index.y) % 3, b = (index.x + 2 * index.y) % 3;
+    return (vec2(3 * a + b, 3 * b + a) + 0.5) / 9.0;
 }
 
 // Occlusion of the ambient light, not yet held to 0..1; metres along the view axis.
@@ -110,15 +100,15 @@ vec4 ssao_gather(Pixel pixel, SsaoGatherParams params, sampler2D distances, samp
         float to_side = dot(normal, side);
         float in_slice = inversesqrt(to_eye * to_eye + to_side * to_side);
         float cosine = to_eye * in_slice, sine = to_side * in_slice;
-        vec3 along = cosine * side - sine * eye;
-        vec2 reach = ssao_sphere_reach(plane, toward * plane_step, params.radius / z, params.radius);
+        vec2 reach = min(ssao_sphere_reach(plane, toward * plane_step, params.radius / z, params.radius),
+                         vec2(ssao_border_reach(from, toward, last), ssao_border_reach(from, -toward, last)));
+        vec3 over = normal * in_slice;
         float slack = rounding * cosine;
-        SsaoHalf ahead = SsaoHalf(toward, min(reach.x, ssao_border_reach(from, toward, last)), along, normal * in_slice);
-        SsaoHalf behind = SsaoHalf(-toward, min(reach.y, ssao_border_reach(from, -toward, last)), -along, ahead.over);
-        lost += ssao_lost(ssao_highest(ahead, from, place, slack, phase.y, params.radius, fade, distances), to_eye,
-                          to_side, cosine, sine);
-        lost += ssao_lost(ssao_highest(behind, from, place, slack, phase.y, params.radius, fade, distances), to_eye,
-                          -to_side, cosine, -sine);
+        float ahead =
+            ssao_highest(from, toward, reach.x, phase.y, place, over, slack, params.radius, fade, distances);
+        float behind =
+            ssao_highest(from, -toward, reach.y, phase.y, place, over, slack, params.radius, fade, distances);
+        lost += ssao_lost(ahead, to_eye, to_side, cosine, sine) + ssao_lost(behind, to_eye, -to_side, cosine, -sine);
     }
     return vec4(lost / float(SSAO_SLICES), z, 0.0, 0.0);
 }

@@ -5,26 +5,20 @@ float ssao_occlusion(Pixel pixel, float radius, sampler2D depth, sampler2D occlu
     if (SSAO_BLOCK == 1) return clamp(texelFetch(occlusion, pixel.index, 0).r, 0.0, 1.0);
     float z = ssao_distance(texelFetch(depth, pixel.index, 0).r);
     if (z == SSAO_NOTHING) return 0.0;
-    ivec2 corner = pixel.index / SSAO_BLOCK, last = textureSize(occlusion, 0) - 1;
-    vec2 fraction = vec2(pixel.index - SSAO_BLOCK * corner) / float(SSAO_BLOCK);
-    float tolerance = 0.25 * radius;
-    float sum = 0.0, weights = 0.0;
-    for (int i = 0; i < 4; ++i) {
-        ivec2 offset = ivec2(i & 1, i >> 1);
-        vec2 part = mix(1.0 - fraction, fraction, vec2(offset));
-        vec2 texel = texelFetch(occlusion, min(corner + offset, last), 0).rg;
-        // Never 0: a surface that no texel shows takes what there is.
-        float likeness = tolerance / (tolerance + abs(texel.g - z));
-        float weight = part.x * part.y * max(likeness * likeness, 1e-12);
-        sum += weight * texel.r;
-        weights += weight;
-    }
-    return sum / weights;
+    vec2 place = vec2(pixel.index) / float(SSAO_BLOCK), corner = floor(place), fraction = place - corner;
+    vec2 between = (corner + 1.0) / vec2(textureSize(occlusion, 0));
+    vec4 occluded = textureGather(occlusion, between, 0); // the texels at corner + (0,1), (1,1), (1,0), (0,0)
+    vec4 z_texels = textureGather(occlusion, between, 1);
+    vec4 part = vec2(1.0 - fraction.x, fraction.x).xyyx * vec2(fraction.y, 1.0 - fraction.y).xxyy;
+    // Never 0: a surface that no texel shows takes what there is.
+    vec4 weight = part * max(1.0 - abs(z_texels - z) * (4.0 / radius), 1e-4);
+    return dot(weight, occluded) / dot(weight, vec4(1.0));
 }
 
-// `color` without the occluded part of `ambient`, which is a share of it; never driven below 0.
+// `color` without the occluded part of `ambient`, which is a share of it; never driven below 0. An ambient share that
+// is not finite means nothing.
 vec3 ssao_darkened(vec3 color, vec3 ambient, float occluded) {
-    if (occluded == 0.0) return color;
-    vec3 lost = occluded * max(postfx_finite_or(ambient, 65504.0), 0.0);
-    return color - min(lost, max(postfx_finite_or(color, 65504.0), 0.0));
+    bool usable = postfx_is_finite(ambient.r + ambient.g + ambient.b);
+    if (occluded == 0.0 || !usable) return color;
+    return color - clamp(occluded * ambient, vec3(0.0), max(color, 0.0));
 }

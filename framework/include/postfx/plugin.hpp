@@ -7,15 +7,14 @@
 //         if (in.number("strength") == 0) return out.identity("strength is 0");
 //         out.compose("shade.glsl");
 //     }
-//     static constexpr auto shade = postfx::effect<plan>("shade").about("Darkens the
-//     corners").with_parameters(parameters); POSTFX_MODULE(&shade)
+//     static constexpr auto shade =
+//         postfx::effect<plan>("shade").about("Darkens the corners").with_parameters(parameters);
+//     POSTFX_MODULE(&shade)
 //
-// GLSL: a source `shade.glsl` defines one function named after the file. docs/write-an-effect.md has the
-// whole story.
+// GLSL: a source `shade.glsl` defines one function named after the file. docs/write-an-effect.md has the whole story.
 //     compose    vec3 shade(vec3 color, Pixel pixel, ShadeParams params [, sampler2D for each reads()])
 //     fragment   vec4 blur_down(Pixel pixel, BlurDownParams params [, sampler2D ...])
-//     several outputs:  void blur_down(Pixel pixel, BlurDownParams params [, sampler2D ...], out vec4 a, out
-//     vec4 b)
+//     several    void blur_down(Pixel pixel, BlurDownParams params [, sampler2D ...], out vec4 a, out vec4 b)
 // The struct's members are the effect's dynamic parameters, then the numbers given by value() in their order.
 // Constant parameters and constant()s are GLSL constants in capitals: parameter `model` of effect `shade` is
 // SHADE_MODEL.
