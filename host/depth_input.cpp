@@ -91,7 +91,7 @@ Camera DepthOptions::camera(int width, int height) const {
 
 void DepthOptions::apply_projection(Camera& camera, int width, int height) const {
     const auto at = [&](int row, int column) {
-        return projection_[static_cast<std::size_t>(4 * column + row)];
+        return projection_.at(4 * static_cast<std::size_t>(column) + static_cast<std::size_t>(row));
     };
     if (at(3, 2) != -1 || at(3, 3) != 0) {
         throw Error("--projection must be a perspective matrix (last row 0 0 -1 0), column by column");

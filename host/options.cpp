@@ -59,7 +59,7 @@ Size parse_size(const std::string& text) {
         const auto result = std::from_chars(text.data() + from, text.data() + to, number);
         return result.ec == std::errc() && result.ptr == text.data() + to && number >= 1 && number <= 16384;
     };
-    if (x == text.npos || !read(0, x, size.width) || !read(x + 1, text.size(), size.height)) {
+    if (x == std::string::npos || !read(0, x, size.width) || !read(x + 1, text.size(), size.height)) {
         throw Error(
             fmt::format("size \"{}\" is not WIDTHxHEIGHT with sides of 1 to 16384, such as 1280x720", text));
     }

@@ -11,6 +11,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 
 namespace postfx::host {
@@ -46,7 +47,7 @@ void ChainRunner::replan(const Facts& facts) {
     facts_ = facts;
 }
 
-std::uint32_t ChainRunner::run(const Textures& textures, FrameInputs frame, Timing timing) {
+std::uint32_t ChainRunner::run(const Textures& textures, const FrameInputs& frame, Timing timing) {
     inputs_.textures.clear();
     for (const std::string& name : plan_.attachments)
         inputs_.textures.push_back(textures.at(name));
@@ -71,7 +72,7 @@ void write_picture(ChainRunner& runner, const std::filesystem::path& file, bool 
     const Image codes = first_channels(runner.executor().read_picture(), channels);
     std::vector<std::uint8_t> bytes(codes.values.size());
     std::transform(codes.values.begin(), codes.values.end(), bytes.begin(),
-                   [](float code) { return static_cast<std::uint8_t>(code * 255.0f + 0.5f); });
+                   [](float code) { return static_cast<std::uint8_t>(std::lround(code * 255.0f)); });
     write_png(file, codes.width, codes.height, channels, bytes);
 }
 

@@ -27,7 +27,7 @@ public:
     void replan(const Facts& facts);
 
     /// Draw one frame. `textures` must hold what attachments() names. Returns the picture's texture.
-    std::uint32_t run(const Textures& textures, FrameInputs frame, Timing timing);
+    std::uint32_t run(const Textures& textures, const FrameInputs& frame, Timing timing);
 
     Executor& executor() { return executor_; }
     const Facts& facts() const { return facts_; }

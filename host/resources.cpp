@@ -39,7 +39,7 @@ fs::path find_chain(const std::string& name_or_path) {
     const bool is_path =
         name_or_path.find('/') != std::string::npos || fs::path(name_or_path).has_extension();
     if (is_path) throw Error(Place{.file = name_or_path}, "no such file");
-    const fs::path named = data_directory() / "configs/chains" / (name_or_path + ".yaml");
+    fs::path named = data_directory() / "configs/chains" / (name_or_path + ".yaml");
     if (fs::is_regular_file(named)) return named;
     throw Error(fmt::format("no chain \"{}\"{} (postfx list chains tells them all)", name_or_path,
                             did_you_mean(name_or_path, chain_names())));

@@ -26,9 +26,9 @@ std::vector<std::vector<std::string>> facts(const EffectInfo& effect) {
 /// "no effect at 0, compiled in"
 std::string remarks(const ParameterInfo& parameter) {
     std::vector<std::string> parts;
-    if (parameter.identity) parts.push_back("no effect at " + identity_text(parameter));
-    if (parameter.constant) parts.push_back("compiled in");
-    if (parameter.logarithmic) parts.push_back("logarithmic");
+    if (parameter.identity) parts.emplace_back("no effect at " + identity_text(parameter));
+    if (parameter.constant) parts.emplace_back("compiled in");
+    if (parameter.logarithmic) parts.emplace_back("logarithmic");
     return fmt::format("{}", fmt::join(parts, ", "));
 }
 

@@ -47,9 +47,9 @@ void match_channels(Pair& pair) {
     if (pair.a.channels == pair.b.channels) return;
     const bool alpha = has_alpha(pair.a) && has_alpha(pair.b);
     const int colors = std::max(pair.a.channels, pair.b.channels) < 3 ? 1 : 3;
-    if (has_alpha(pair.a) != has_alpha(pair.b)) pair.notes.push_back("only one has alpha; it is left out");
+    if (has_alpha(pair.a) != has_alpha(pair.b)) pair.notes.emplace_back("only one has alpha; it is left out");
     if ((pair.a.channels < 3) != (pair.b.channels < 3))
-        pair.notes.push_back("one is grey; it is taken as equal red, green and blue");
+        pair.notes.emplace_back("one is grey; it is taken as equal red, green and blue");
     pair.a = reshaped(pair.a, colors, alpha);
     pair.b = reshaped(pair.b, colors, alpha);
 }
@@ -68,7 +68,7 @@ Pair read_pair(const std::string& file_a, const std::string& file_b, const std::
         b.image = read_data(file_b);
     }
     if (!a.layers.empty() || !b.layers.empty())
-        pair.notes.push_back("only the colour is compared; --layer selects another layer");
+        pair.notes.emplace_back("only the colour is compared; --layer selects another layer");
     pair.a = std::move(a.image);
     pair.b = std::move(b.image);
     match_channels(pair);

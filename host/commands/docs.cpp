@@ -24,7 +24,7 @@ constexpr std::string_view generated =
 
 /// A cell of a Markdown table.
 std::string cell(std::string text) {
-    for (std::size_t at = text.find('|'); at != text.npos; at = text.find('|', at + 2))
+    for (std::size_t at = text.find('|'); at != std::string::npos; at = text.find('|', at + 2))
         text.insert(at, "\\");
     return text;
 }

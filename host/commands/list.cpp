@@ -23,10 +23,10 @@ std::string first_sentence(const std::filesystem::path& file) {
     std::string comment;
     for (std::string line; std::getline(in, line) && line.starts_with("#");) {
         const std::size_t text = line.find_first_not_of("# ");
-        if (text == line.npos) break;
+        if (text == std::string::npos) break;
         comment += (comment.empty() ? "" : " ") + line.substr(text);
         const std::size_t end = comment.find(". ");
-        if (end != comment.npos) return comment.substr(0, end);
+        if (end != std::string::npos) return comment.substr(0, end);
     }
     if (comment.ends_with('.')) comment.pop_back();
     return comment;

@@ -43,7 +43,7 @@ constexpr std::string_view reserved_words =
 void check_name(const std::string& name) {
     const auto legal = [](char c) { return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_'; };
     const bool is_id = !name.empty() && name.size() <= 63 && name[0] >= 'a' && name[0] <= 'z'
-                       && std::all_of(name.begin(), name.end(), legal) && name.find("__") == name.npos
+                       && std::all_of(name.begin(), name.end(), legal) && name.find("__") == std::string::npos
                        && !name.ends_with('_') && !name.starts_with("gl_");
     if (!is_id) {
         throw Error(
@@ -51,7 +51,7 @@ void check_name(const std::string& name) {
                         "first, at most 63, such as film_tint",
                         name));
     }
-    if (reserved_words.find(" " + name + " ") != reserved_words.npos)
+    if (reserved_words.find(" " + name + " ") != std::string::npos)
         throw Error(
             fmt::format("\"{}\" can't name an effect: the word has another meaning in GLSL or here", name));
 }
@@ -73,7 +73,7 @@ std::string upper(std::string name) {
 }
 
 std::string replaced(std::string text, std::string_view from, const std::string& to) {
-    for (std::size_t at = text.find(from); at != text.npos; at = text.find(from, at + to.size()))
+    for (std::size_t at = text.find(from); at != std::string::npos; at = text.find(from, at + to.size()))
         text.replace(at, from.size(), to);
     return text;
 }

@@ -137,7 +137,7 @@ private:
             const std::size_t equals = item.find('=');
             const std::string name = item.substr(0, equals);
             const std::vector<std::string>& names = SceneRenderer::attachment_names();
-            if (equals == item.npos || std::find(names.begin(), names.end(), name) == names.end()) {
+            if (equals == std::string::npos || std::find(names.begin(), names.end(), name) == names.end()) {
                 throw Error(fmt::format("--save \"{}\" is not NAME=FILE with NAME one of {}{}", item,
                                         fmt::join(names, ", "), did_you_mean(name, names)));
             }

@@ -28,7 +28,7 @@ glm::dvec3 unit(const YamlValue& value) {
 
 Animation::Turn read_turn(const YamlValue& value, const std::string& what, bool has_center) {
     std::vector<std::string> keys{"axis", "degrees_per_second"};
-    if (has_center) keys.push_back("center");
+    if (has_center) keys.emplace_back("center");
     const YamlMap map(value, what, keys);
     Animation::Turn turn;
     map.read("center", turn.center, any_length);
@@ -160,7 +160,7 @@ Light read_light(const YamlValue& value) {
         keys.insert(keys.end(), {"shadow", "shadow_softness", "shadow_extent"});
     } else {
         light.kind = kind == "spot" ? Light::Kind::spot : Light::Kind::point;
-        keys.push_back("attenuation");
+        keys.emplace_back("attenuation");
         light.attenuation = {1, 0, 1};
         if (kind == "spot")
             keys.insert(keys.end(), {"inner_angle", "outer_angle", "shadow", "shadow_softness"});

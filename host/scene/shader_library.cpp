@@ -32,7 +32,7 @@ public:
     }
     ShaderText& made(const std::string& text) {
         text_ += fmt::format("#line 1 {}\n{}\n", files_.size(), text);
-        files_.push_back("(generated for this scene)");
+        files_.emplace_back("(generated for this scene)");
         return *this;
     }
     const std::string& text() const { return text_; }

@@ -63,7 +63,7 @@ std::string YamlValue::text() const {
 }
 
 std::string YamlValue::choice(const std::vector<std::string>& words) const {
-    const std::string word = text();
+    std::string word = text();
     if (std::find(words.begin(), words.end(), word) != words.end()) return word;
     fail(fmt::format("unknown word \"{}\", expected one of {}{}", word, fmt::join(words, ", "),
                      did_you_mean(word, words)));

@@ -20,8 +20,8 @@ struct Range {
 /// A value of a document, with the name of its file. Throws Error from every reading function.
 class YamlValue {
 public:
-    YamlValue(YAML::Node node, std::shared_ptr<const std::string> file)
-        : node_(std::make_shared<const YAML::Node>(std::move(node))), file_(std::move(file)) {}
+    YamlValue(const YAML::Node& node, std::shared_ptr<const std::string> file)
+        : node_(std::make_shared<const YAML::Node>(node)), file_(std::move(file)) {}
 
     [[noreturn]] void fail(const std::string& message) const;
     const std::string& file() const { return *file_; }

@@ -214,7 +214,7 @@ TEST_CASE("the default costs few samples") {
         const std::string& text = plan.passes.at(0).program->text;
         const auto constant_after = [&](const std::string& name) {
             const std::size_t at = text.find("const int CHROMATIC_ABERRATION_" + name + "_TAPS = ");
-            REQUIRE(at != text.npos);
+            REQUIRE(at != std::string::npos);
             return std::stoi(text.substr(text.find('=', at) + 1));
         };
         return constant_after("RED") + constant_after("BLUE");

@@ -164,7 +164,7 @@ TEST_CASE("the plane in focus keeps its bits, beside blur too") {
     const Image result = three_channels(run_effect("depth_of_field", input, lens(9, size, perspective)));
     Image left = color, expected = result;
     for (int y = 0; y < size; ++y) {
-        std::memcpy(expected.pixel(0, y), color.pixel(0, y), 48 * 3 * sizeof(float));
+        std::memcpy(expected.pixel(0, y), color.pixel(0, y), std::size_t{48} * 3 * sizeof(float));
     }
     CHECK(same_bits(result, expected));
     CHECK_FALSE(same_bits(result, color));
@@ -358,7 +358,7 @@ TEST_CASE("a lens can't focus within its focal length, and says so") {
 
 TEST_CASE("without a focus distance the camera's own counts, and 5 m if it has none") {
     Input input{.color = noise(48, 32, 0, 1), .attachments = {{"depth", Image(48, 32, 1)}}};
-    for (std::size_t i = 0; i < 48 * 32; ++i) {
+    for (std::size_t i = 0; i < std::size_t{48} * 32; ++i) {
         const double z = 1 + 0.01 * static_cast<double>(i);
         input.attachments["depth"].values[i] = static_cast<float>(input.camera.depth_at(z));
     }

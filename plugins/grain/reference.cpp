@@ -28,7 +28,7 @@ Triple random_at(int x, int y, const ReferenceInput& input) {
     }
     Triple result;
     for (int i = 0; i < 3; ++i)
-        result[i] = std::sqrt(12.0) * ((v[i] / 256) / 16777216.0 - 0.5);
+        result[i] = std::sqrt(12.0) * ((v[i] >> 8) / 16777216.0 - 0.5);
     return result;
 }
 

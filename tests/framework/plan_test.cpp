@@ -94,7 +94,7 @@ Number number_at(const postfx::Pass& pass, std::size_t offset) {
 
 std::size_t count(const std::string& text, const std::string& part) {
     std::size_t n = 0;
-    for (std::size_t at = 0; (at = text.find(part, at)) != text.npos; at += part.size())
+    for (std::size_t at = 0; (at = text.find(part, at)) != std::string::npos; at += part.size())
         ++n;
     return n;
 }
@@ -353,7 +353,7 @@ TEST_CASE("a compiled-in float reads back as the float that it is") {
             const std::string text = plan_of(chain).passes.at(0).program->text;
             const std::string start = "const float CURVE_KNEE = ";
             const std::size_t at = text.find(start);
-            REQUIRE(at != text.npos);
+            REQUIRE(at != std::string::npos);
             CHECK(std::strtof(text.c_str() + at + start.size(), nullptr) == static_cast<float>(value));
         }
     }

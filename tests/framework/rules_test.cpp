@@ -70,10 +70,10 @@ std::size_t find_name(std::string_view text, std::string_view word) {
     const auto outside = [&](std::size_t at) {
         return at >= text.size() || !std::isalnum(static_cast<unsigned char>(text[at]));
     };
-    for (std::size_t at = 0; (at = text.find(word, at)) != text.npos; ++at) {
+    for (std::size_t at = 0; (at = text.find(word, at)) != std::string::npos; ++at) {
         if (outside(at - 1) && outside(at + word.size())) return at; // at - 1 wraps beyond the end at 0
     }
-    return text.npos;
+    return std::string::npos;
 }
 
 } // namespace

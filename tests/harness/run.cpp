@@ -37,23 +37,6 @@ void require_gl() {
     if (!has_gl(&why)) throw Error(why);
 }
 
-const Catalog& catalog() {
-    static const Catalog found = Catalog::discover();
-    return found;
-}
-
-Facts facts_of(const Input& input, Format working_format) {
-    Facts facts;
-    facts.width = input.color.width;
-    facts.height = input.color.height;
-    facts.camera = input.camera;
-    for (const auto& [name, image] : input.attachments)
-        facts.attachments.push_back(name);
-    facts.working_format = working_format;
-    facts.output = Output::linear;
-    return facts;
-}
-
 Chain single(const std::string& effect, const Values& values) {
     Chain chain;
     ChainEntry& entry = chain.add(catalog(), effect);
@@ -62,7 +45,7 @@ Chain single(const std::string& effect, const Values& values) {
         const std::string parameter = id.substr(0, dot);
         if (parameter == "quality") {
             entry.level = static_cast<int>(value);
-        } else if (dot != id.npos) {
+        } else if (dot != std::string::npos) {
             const auto index = entry.effect->find_parameter(parameter);
             if (!index) throw Error(fmt::format("{} has no parameter {}", effect, parameter));
             entry.values[*index][static_cast<std::size_t>(id[dot + 1] - '0')] = value;
@@ -88,13 +71,39 @@ Image with_alpha(const Image& image) {
 Image run(const Chain& chain, const Input& input, const Facts& facts) {
     require_gl();
     static Planner planner;
-    const Plan plan = planner.plan(chain, facts);
-    Executor executor;
-    executor.prepare(plan);
+    Runner runner;
+    runner.prepare(planner.plan(chain, facts));
+    return runner.draw(input);
+}
 
+} // namespace
+
+const Catalog& catalog() {
+    static const Catalog found = Catalog::discover();
+    return found;
+}
+
+Facts facts_of(const Input& input, Format working_format) {
+    Facts facts;
+    facts.width = input.color.width;
+    facts.height = input.color.height;
+    facts.camera = input.camera;
+    for (const auto& [name, image] : input.attachments)
+        facts.attachments.push_back(name);
+    facts.working_format = working_format;
+    facts.output = Output::linear;
+    return facts;
+}
+
+void Runner::prepare(Plan plan) {
+    executor_.prepare(plan);
+    plan_ = std::move(plan);
+}
+
+Image Runner::draw(const Input& input) {
     std::vector<gl::Texture> textures;
     FrameInputs frame;
-    for (const std::string& name : plan.attachments) {
+    for (const std::string& name : plan_.attachments) {
         const Image& image = name == "color" ? input.color : input.attachments.at(name);
         const bool data = name == "depth";
         textures.emplace_back(image.width, image.height, data ? Format::r32f : Format::rgba32f);
@@ -105,14 +114,12 @@ Image run(const Chain& chain, const Input& input, const Facts& facts) {
     frame.time = input.time;
     frame.frame = input.frame;
     frame.seed = input.seed;
-    executor.run(frame);
-    Image picture = executor.read_picture();
+    executor_.run(frame);
+    Image picture = executor_.read_picture();
     const std::vector<std::string> messages = gl::take_debug_messages();
     if (!messages.empty()) throw Error("OpenGL says: " + messages.front());
     return picture;
 }
-
-} // namespace
 
 bool has_gl(std::string* why) {
     const Context& context = Context::get();

@@ -39,6 +39,26 @@ Image run_effect(const std::string& effect, const Input& input, const Values& va
 Image run_chain(const std::string& yaml, const Input& input, Format working_format = Format::rgba32f,
                 bool fuse = true);
 
+/// The effects of this build.
+const Catalog& catalog();
+
+/// What a host would tell the planner about that input; the output is linear.
+Facts facts_of(const Input& input, Format working_format = Format::rgba32f);
+
+/// Draws many plans with one executor, so that programs and targets are kept; a context must be there (has_gl).
+class Runner {
+public:
+    /// Compile and allocate. Throws Error.
+    void prepare(Plan plan);
+    /// Upload the input and draw the prepared plan, whose size and attachments it must have. Throws Error, also when
+    /// OpenGL complained.
+    Image draw(const Input& input);
+
+private:
+    Plan plan_;
+    Executor executor_;
+};
+
 /// The plan of one effect for that input (no GL).
 Plan plan_effect(const std::string& effect, const Input& input, const Values& values = {});
 

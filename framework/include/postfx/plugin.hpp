@@ -163,7 +163,7 @@ private:
 
     const double* values(const char* id) const {
         const auto* first = reinterpret_cast<const char*>(request_.effect->parameters);
-        for (std::uint32_t i = 0; i < request_.effect->parameter_count; ++i) {
+        for (std::size_t i = 0; i < request_.effect->parameter_count; ++i) {
             const auto* parameter =
                 reinterpret_cast<const postfx_parameter*>(first + i * request_.effect->parameter_stride);
             if (std::strcmp(parameter->id, id) == 0) return request_.values + 4 * i;

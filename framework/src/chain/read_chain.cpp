@@ -242,7 +242,7 @@ private:
 
     /// Beside the including file, else in the include directories; where it is nowhere, beside the file.
     fs::path find_included(const std::string& name) const {
-        const fs::path beside = (open_.back().shown.parent_path() / name).lexically_normal();
+        fs::path beside = (open_.back().shown.parent_path() / name).lexically_normal();
         if (fs::exists(beside)) return beside;
         for (const fs::path& directory : include_directories_) {
             if (fs::exists(directory / name)) return directory / name;

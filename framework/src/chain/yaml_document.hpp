@@ -36,7 +36,7 @@ struct YamlMember {
 /// Bounds that no chain written by a person comes near. They keep hostile files cheap: time and memory grow
 /// with the text alone, and the parser's recursion stays shallow.
 struct YamlLimits {
-    static constexpr std::size_t bytes = 1024 * 1024;
+    static constexpr std::size_t bytes = std::size_t{1024} * 1024;
     static constexpr std::size_t depth = 16;
     static constexpr std::size_t nodes = 20'000; ///< keys and values
 };

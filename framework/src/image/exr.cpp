@@ -132,7 +132,7 @@ private:
                 fail(file_, fmt::format("its channel {} is subsampled; write it at full resolution",
                                         channel.name()));
             std::string name = channel.name();
-            if (sources_.contains(name)) name = part_prefix(header, part) + "." + name;
+            if (sources_.contains(name)) name.insert(0, part_prefix(header, part) + ".");
             if (sources_.emplace(name, Source{part, channel.name()}).second) names_.push_back(name);
         }
     }

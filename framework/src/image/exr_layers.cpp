@@ -37,7 +37,7 @@ void group_components(const std::string& prefix, std::set<std::string> rest, Lay
         first = {"R", "G", "B"};
     else if (prefix.empty() && take(rest, {"Y"}))
         first = {"Y"};
-    if (!first.empty() && take(rest, {"A"})) first.push_back("A");
+    if (!first.empty() && take(rest, {"A"})) first.emplace_back("A");
     if (first.empty() && !prefix.empty()) {
         first.assign(rest.begin(), rest.end());
         rest.clear();

@@ -43,7 +43,7 @@ std::string struct_name(const Stage& stage) {
 std::string literal(double value, bool integer) {
     if (integer) return fmt::format("{}", static_cast<long long>(value));
     std::string text = fmt::format("{:.9g}", static_cast<float>(value));
-    if (text.find_first_of(".en") == text.npos) text += ".0";
+    if (text.find_first_of(".en") == std::string::npos) text += ".0";
     return text;
 }
 
@@ -115,7 +115,8 @@ private:
             const std::size_t end = std::min(glsl.find('\n', at), glsl.size());
             const std::string_view row = glsl.substr(at, end - at);
             at = end + 1;
-            if (row.find("#include") == row.find_first_not_of(" \t") && row.find("#include") != row.npos) {
+            if (row.find("#include") == row.find_first_not_of(" \t")
+                && row.find("#include") != std::string::npos) {
                 include(row, Place{.file = name, .line = line, .effect = effect ? effect->id : ""}, effect);
                 program_.text += fmt::format("#line {} {}\n", line + 1, file);
             } else {
@@ -127,7 +128,7 @@ private:
     void include(std::string_view row, const Place& place, const EffectInfo* effect) {
         const std::size_t open = row.find_first_of("<\"");
         const std::size_t close = row.find_last_of(">\"");
-        if (open == row.npos || close <= open) {
+        if (open == std::string::npos || close <= open) {
             throw Error(place, "#include expects <postfx/name.glsl> or \"name.glsl\"");
         }
         const std::string name(row.substr(open + 1, close - open - 1));

@@ -161,7 +161,7 @@ void Catalog::scan(const fs::path& directory) {
         try {
             load(module);
         } catch (const Error& error) {
-            notes_.push_back(error.what());
+            notes_.emplace_back(error.what());
         }
     }
 }

@@ -40,7 +40,8 @@ struct Complaint {
 bool is_id(std::string_view id) {
     const auto legal = [](char c) { return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_'; };
     return !id.empty() && id.size() <= 63 && id[0] >= 'a' && id[0] <= 'z'
-           && std::all_of(id.begin(), id.end(), legal) && id.find("__") == id.npos && !id.starts_with("gl_");
+           && std::all_of(id.begin(), id.end(), legal) && id.find("__") == std::string::npos
+           && !id.starts_with("gl_");
 }
 
 std::string text_or_empty(const char* text) {

@@ -121,7 +121,7 @@ private:
     std::optional<std::string> check_include(std::string_view row) const {
         if (!row.starts_with("#include")) return std::nullopt;
         if (state_ == State::block) return refuse("has an #include in a comment");
-        if (row.find("//") != row.npos || row.find("/*") != row.npos) {
+        if (row.find("//") != std::string::npos || row.find("/*") != std::string::npos) {
             return refuse("has a comment behind an #include");
         }
         return std::nullopt;

@@ -1,0 +1,340 @@
+// What every effect of the catalog must survive, whatever it does: hostile pixels, depths, normals, sizes, values and
+// times. An effect gets these checks by existing; none is named here. POSTFX_LONG=1 draws more random values.
+#include "hard_inputs.hpp"
+
+#include <catch2/catch.hpp>
+#include <fmt/format.h>
+
+#include <cstdlib>
+#include <cstring>
+#include <optional>
+#include <random>
+
+using namespace postfx;
+using namespace postfx::testing;
+
+namespace {
+
+constexpr std::uint32_t random_seed = 20240607;
+constexpr double one_week = 7 * 24 * 3600.0; // seconds
+
+int random_sets() {
+    const char* longer = std::getenv("POSTFX_LONG");
+    return longer && *longer == '1' ? 200 : 40;
+}
+
+bool same_bits_in_all_channels(const Image& a, const Image& b) {
+    return a.width == b.width && a.height == b.height && a.channels == b.channels
+           && std::memcmp(a.values.data(), b.values.data(), a.values.size() * sizeof(float)) == 0;
+}
+
+bool is_finite(const float* pixel) {
+    return std::isfinite(pixel[0]) && std::isfinite(pixel[1]) && std::isfinite(pixel[2]);
+}
+
+/// Where the result is not finite although that pixel's own colour is. Whatever the neighbours and the geometry are:
+/// a bad pixel may stay what it is, it never spreads.
+std::string spread(const Image& result, const Image& color) {
+    std::size_t count = 0;
+    std::string first;
+    for (int y = 0; y < color.height; ++y) {
+        for (int x = 0; x < color.width; ++x) {
+            const float* pixel = result.pixel(x, y);
+            if (is_finite(pixel) || !is_finite(color.pixel(x, y))) continue;
+            if (count++ == 0) first = fmt::format("({}, {}) = {} {} {}", x, y, pixel[0], pixel[1], pixel[2]);
+        }
+    }
+    return count == 0 ? "" : fmt::format("{} pixels became non-finite, the first {}", count, first);
+}
+
+struct Tally {
+    int cases = 0;
+    int skipped = 0; ///< rightly nothing to do: identity values, nothing to read
+    int refused = 0; ///< with a reason
+    int failed = 0;
+
+    Tally& operator+=(const Tally& other) {
+        cases += other.cases;
+        skipped += other.skipped;
+        refused += other.refused;
+        failed += other.failed;
+        return *this;
+    }
+    void print(const std::string& name) const {
+        fmt::print("{:<22} {:5} cases: {:4} skipped as identity, {:3} refused with a reason, {} failed\n",
+                   name, cases, skipped, refused, failed);
+    }
+};
+
+/// One effect under test: its entry with defaults, and the tally of what was tried on it.
+class Trial {
+public:
+    explicit Trial(EffectPtr effect) : effect_(std::move(effect)) {}
+
+    Input input(Size size = usual_size, const Camera& camera = Camera::perspective(45, 0.1)) const {
+        return ordinary_input(effect_->reads, size, camera);
+    }
+    const EffectInfo& effect() const { return *effect_; }
+    int levels() const { return std::max<int>(1, static_cast<int>(effect_->levels.size())); }
+
+    ChainEntry entry(int level) const {
+        Chain chain;
+        ChainEntry made = chain.add(catalog(), effect_->id);
+        made.level = level;
+        return made;
+    }
+    ChainEntry entry() const { return entry(effect_->default_level); }
+
+    /// Draw, draw something else over it, draw again: same bits, so that nothing is left unwritten, and no pixel of
+    /// finite light lost.
+    void check(const std::string& what, const ChainEntry& entry, const Input& input,
+               Format working_format = Format::rgba32f) {
+        attempt(what, entry, [&] {
+            if (!plan(entry, input, working_format)) return std::string();
+            const Image first = runner_.draw(input);
+            runner_.draw(poison(input));
+            if (!same_bits_in_all_channels(first, runner_.draw(input))) {
+                return std::string("drawn again over other pixels, the result is another");
+            }
+            return spread(first, input.color);
+        });
+    }
+
+    /// Nothing may happen to the pixels, not even to bits that arithmetic loses.
+    void check_identity(const std::string& what, const ChainEntry& entry, const Input& input) {
+        attempt(what, entry, [&] {
+            if (!plan(entry, input, Format::rgba32f)) return std::string("the identity was refused");
+            return same_bits(runner_.draw(input), input.color) ? std::string() : "the input's bits changed";
+        });
+    }
+
+    /// Anything but the identity at its defaults: otherwise the cases would prove nothing.
+    void check_runs(int level) {
+        const ChainEntry tried = entry(level);
+        attempt("defaults", tried, [&] {
+            const PlannedEffect planned = planner_.plan(Chain{{tried}}, facts_of(input())).effects.front();
+            return planned.status == EffectStatus::skipped ? "skipped: " + planned.reason : std::string();
+        });
+    }
+
+    Tally tally;
+
+private:
+    /// False: the effect refuses these values, with a reason.
+    bool plan(const ChainEntry& entry, const Input& input, Format working_format) {
+        std::optional<Plan> plan;
+        try {
+            plan = planner_.plan(Chain{{entry}}, facts_of(input, working_format));
+        } catch (const Error& error) {
+            if (error.message().empty()) throw;
+            ++tally.refused;
+            return false;
+        }
+        tally.skipped += plan->effects.front().status == EffectStatus::skipped;
+        runner_.prepare(std::move(*plan));
+        return true;
+    }
+
+    /// `body` returns what went wrong.
+    template<class Body>
+    void attempt(const std::string& what, const ChainEntry& entry, Body body) {
+        ++tally.cases;
+        std::string problem;
+        try {
+            problem = body();
+        } catch (const std::exception& error) {
+            problem = fmt::format("failed: {}", error.what());
+        }
+        if (problem.empty()) return;
+        ++tally.failed;
+        const std::string level =
+            effect_->levels.empty() ? "" : ", " + effect_->levels[static_cast<std::size_t>(entry.level)].id;
+        FAIL_CHECK(effect_->id << level << ", " << what << ": " << problem);
+    }
+
+    EffectPtr effect_;
+    Planner planner_;
+    Runner runner_;
+};
+
+void try_defaults(Trial& trial) {
+    for (int level = 0; level < trial.levels(); ++level)
+        trial.check_runs(level);
+}
+
+void try_colors(Trial& trial) {
+    for (const auto& [name, color] : hard_colors()) {
+        Input input = trial.input();
+        input.color = color;
+        for (int level = 0; level < trial.levels(); ++level)
+            trial.check(name, trial.entry(level), input);
+    }
+}
+
+/// In the format that pictures are usually worked on, which overflows beyond 65504.
+void try_half_precision(Trial& trial) {
+    for (int level = 0; level < trial.levels(); ++level) {
+        Input input = trial.input();
+        trial.check("rgba16f", trial.entry(level), input, Format::rgba16f);
+        fill(input.color, largest_half);
+        trial.check("rgba16f, all pixels 65504", trial.entry(level), input, Format::rgba16f);
+    }
+}
+
+/// `name` holds the value at one pixel, then everywhere.
+void try_attachment(Trial& trial, const Input& ordinary, const std::string& name, float value,
+                    const std::string& what) {
+    for (int level = 0; level < trial.levels(); ++level) {
+        Input input = ordinary;
+        put_spot(input.attachments.at(name), value);
+        trial.check(fmt::format("{} with a pixel of {}", what, value), trial.entry(level), input);
+        fill(input.attachments.at(name), value);
+        trial.check(fmt::format("{} of {} everywhere", what, value), trial.entry(level), input);
+    }
+}
+
+void try_geometry(Trial& trial) {
+    for (const auto& [name, camera] : hard_cameras()) {
+        const Input ordinary = trial.input(usual_size, camera);
+        for (int level = 0; level < trial.levels(); ++level)
+            trial.check(name, trial.entry(level), ordinary);
+        if (!ordinary.attachments.contains("depth")) continue;
+        for (float depth :
+             {0.0f, 1.0f, static_cast<float>(camera.sky_depth), not_a_number, infinite, -infinite})
+            try_attachment(trial, ordinary, "depth", depth, name + ", depth");
+    }
+}
+
+void try_attachments(Trial& trial) {
+    const Input ordinary = trial.input();
+    for (const auto& [name, image] : ordinary.attachments) {
+        if (name == "depth") continue; // with its cameras, above
+        for (float value : {0.0f, denormal, -1.0f, largest_half, not_a_number, infinite})
+            try_attachment(trial, ordinary, name, value, name);
+        Input without = ordinary;
+        without.attachments.erase(name);
+        for (int level = 0; level < trial.levels(); ++level)
+            trial.check("without " + name, trial.entry(level), without);
+    }
+    const Input alone{.color = ordinary.color};
+    for (int level = 0; level < trial.levels(); ++level)
+        trial.check("without attachments", trial.entry(level), alone);
+}
+
+void try_sizes(Trial& trial) {
+    for (Size size : hard_sizes) {
+        for (int level = 0; level < trial.levels(); ++level)
+            trial.check(text_of(size), trial.entry(level), trial.input(size));
+    }
+}
+
+void try_times(Trial& trial) {
+    for (int level = 0; level < trial.levels(); ++level) {
+        for (double time : {0.0, one_week}) {
+            for (std::uint32_t frame : {0u, 1u << 31, ~0u}) {
+                Input input = trial.input();
+                input.time = time;
+                input.frame = frame;
+                trial.check(fmt::format("time {} s, frame {}", time, frame), trial.entry(level), input);
+            }
+        }
+    }
+}
+
+/// Every parameter alone and all together at both ends, on ordinary and on the brightest light.
+void try_extremes(Trial& trial) {
+    const Input ordinary = trial.input();
+    Input brightest = ordinary;
+    fill(brightest.color, largest_half);
+    const auto check = [&](const std::string& what, const ChainEntry& entry) {
+        trial.check(what, entry, ordinary);
+        trial.check(what + ", all pixels 65504", entry, brightest);
+        trial.check(what + ", all pixels 65504, rgba16f", entry, brightest, Format::rgba16f);
+    };
+    for (bool at_maximum : {false, true}) {
+        const char* end = at_maximum ? "maximum" : "minimum";
+        for (const ParameterInfo& parameter : trial.effect().parameters) {
+            ChainEntry entry = trial.entry();
+            entry.set(parameter.id, at_maximum ? parameter.maximum : parameter.minimum);
+            check(fmt::format("{} at its {}", parameter.id, end), entry);
+        }
+        for (int level = 0; level < trial.levels(); ++level) {
+            ChainEntry entry = trial.entry(level);
+            for (const ParameterInfo& parameter : trial.effect().parameters)
+                entry.set(parameter.id, at_maximum ? parameter.maximum : parameter.minimum);
+            check(fmt::format("every parameter at its {}", end), entry);
+        }
+    }
+}
+
+/// A value of the range; ends and default come up often, since that is where branches are.
+double random_value(const ParameterInfo& parameter, std::mt19937& random) {
+    const double share = static_cast<double>(random() >> 8) / 16777216.0;
+    switch (random() % 6) {
+    case 0:
+        return parameter.minimum;
+    case 1:
+        return parameter.maximum;
+    case 2:
+        return parameter.default_value[0];
+    default:
+        break;
+    }
+    if (parameter.logarithmic && parameter.minimum > 0) {
+        return parameter.minimum * std::pow(parameter.maximum / parameter.minimum, share);
+    }
+    return parameter.minimum + share * (parameter.maximum - parameter.minimum);
+}
+
+void try_random_values(Trial& trial) {
+    std::mt19937 random(random_seed);
+    const std::vector<Named<Camera>> cameras = hard_cameras();
+    for (int set = 0; set < random_sets(); ++set) {
+        ChainEntry entry = trial.entry(static_cast<int>(random() % static_cast<unsigned>(trial.levels())));
+        std::string what = fmt::format("random set {}:", set);
+        for (const ParameterInfo& parameter : trial.effect().parameters) {
+            const double value = random_value(parameter, random);
+            entry.set(parameter.id, value);
+            what += fmt::format(" {}={}", parameter.id, value);
+        }
+        const auto& [camera_name, camera] = cameras[random() % cameras.size()];
+        const Size size = set % 4 == 0 ? hard_sizes[random() % std::size(hard_sizes)] : usual_size;
+        Input input = trial.input(size, camera);
+        put_spot(input.color, largest_half);
+        const Format format = random() % 2 ? Format::rgba16f : Format::rgba32f;
+        trial.check(fmt::format("{}, {}, {}, {}", what, camera_name, text_of(size), format_info(format).name),
+                    entry, input, format);
+    }
+}
+
+void try_identities(Trial& trial) {
+    Input input = trial.input();
+    input.color = fragile_color();
+    for (const ParameterInfo& parameter : trial.effect().parameters) {
+        if (!parameter.identity) continue;
+        for (int level = 0; level < trial.levels(); ++level) {
+            ChainEntry entry = trial.entry(level);
+            entry.set(parameter.id, *parameter.identity);
+            trial.check_identity(fmt::format("{} = {}", parameter.id, *parameter.identity), entry, input);
+        }
+    }
+}
+
+} // namespace
+
+TEST_CASE("every effect of the catalog survives the hard cases") {
+    REQUIRE(!catalog().effects().empty());
+    fmt::print("{} random sets per effect, seed {}\n", random_sets(), random_seed);
+    Tally all;
+    for (const EffectPtr& effect : catalog().effects()) {
+        Trial trial(effect);
+        for (auto* attempt : {try_defaults, try_colors, try_half_precision, try_geometry, try_attachments,
+                              try_sizes, try_times, try_extremes, try_random_values, try_identities}) {
+            attempt(trial);
+        }
+        trial.tally.print(effect->id);
+        all += trial.tally;
+    }
+    all.print("all effects");
+    CHECK(all.failed == 0);
+}
