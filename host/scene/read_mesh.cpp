@@ -91,7 +91,7 @@ MadeParts read_faces(const YamlValue& value, const Context&) {
     for (const YamlValue& face : value.list()) {
         std::vector<glm::vec3> corners;
         for (const YamlValue& corner : face.list())
-            corners.push_back(corner.vector(any_length));
+            corners.emplace_back(corner.vector(any_length));
         if (corners.size() < 3)
             face.fail(fmt::format("a face has at least 3 corners, found {}", corners.size()));
         mesh.face(corners);

@@ -24,7 +24,7 @@ public:
         for (const postfx_source& source : postfx_embedded_sources) {
             if (name == source.name) {
                 text_ += fmt::format("#line 1 {}\n{}\n", files_.size(), source.text);
-                files_.push_back(source.path);
+                files_.emplace_back(source.path);
                 return *this;
             }
         }

@@ -102,9 +102,8 @@ TEST_CASE("fresnel is exact, by Schlick near, and the seed's ramp is its own mod
     }
     for (double width : {0.05, 0.3, 2.0}) {
         const Values values = bare({{"width", width}, {"quality", classic}});
-        Input unit = input;
-        const Worst worst = worst_difference(run_effect("rim_light", unit, values),
-                                             reference(reference_input("rim_light", unit, values)));
+        const Worst worst = worst_difference(run_effect("rim_light", input, values),
+                                             reference(reference_input("rim_light", input, values)));
         CHECK(worst.absolute <= 4 * ulp / width + ulp);
     }
 }

@@ -38,11 +38,19 @@ inline std::string text_of(Size size) {
     return std::to_string(size.width) + "x" + std::to_string(size.height);
 }
 
+/// The camera moved up by metres and tilted down so that it looks at the ground and the horizon.
+inline Camera lifted(Camera camera, double height) {
+    camera.view_to_world = {1, 0, 0, 0, 0, 0.8, -0.6, 0, 0, 0.6, 0.8, 0, 0, height, 0, 1};
+    return camera;
+}
+
 inline std::vector<Named<Camera>> hard_cameras() {
     using Kind = Camera::DepthKind;
     return {{"reversed infinite", Camera::perspective(45, 0.1)},
             {"reversed, far/near 1e7", Camera::perspective(45, 0.1, 1e6, Kind::reversed)},
             {"standard, far/near 1e7", Camera::perspective(45, 0.1, 1e6, Kind::standard)},
+            {"reversed infinite, 1000 km up", lifted(Camera::perspective(45, 0.1), 1e6)},
+            {"reversed infinite, 1000 km down", lifted(Camera::perspective(45, 0.1), -1e6)},
             {"orthographic reversed", Camera::parallel(10, 0.1, 100)},
             {"orthographic standard, far/near 1e7", Camera::parallel(10, 0.1, 1e6, Kind::standard)}};
 }
@@ -106,6 +114,15 @@ inline void put_spot(Image& image, float value) {
     std::fill(middle, middle + image.channels, value);
 }
 
+/// Single NaN and infinite pixels amid the others.
+inline void put_non_finite(Image& image) {
+    const float values[] = {not_a_number, infinite, -infinite};
+    for (int i = 0; i < 3; ++i) {
+        float* pixel = image.pixel(image.width * (i + 1) / 4, image.height * (i + 1) / 4);
+        std::fill(pixel, pixel + image.channels, values[i]);
+    }
+}
+
 inline void fill(Image& image, float value) {
     std::fill(image.values.begin(), image.values.end(), value);
 }
@@ -116,7 +133,8 @@ inline std::vector<Named<Image>> hard_colors() {
     for (const auto& [name, value] : std::vector<std::pair<std::string, float>>{{"NaN", not_a_number},
                                                                                 {"+infinity", infinite},
                                                                                 {"-infinity", -infinite},
-                                                                                {"negative", -5.0f},
+                                                                                {"-1", -1.0f},
+                                                                                {"-5", -5.0f},
                                                                                 {"-65504", -largest_half},
                                                                                 {"denormal", denormal},
                                                                                 {"65504", largest_half},
