@@ -47,7 +47,8 @@ void ChainRunner::replan(const Facts& facts) {
     facts_ = facts;
 }
 
-std::uint32_t ChainRunner::run(const Textures& textures, const FrameInputs& frame, Timing timing) {
+std::uint32_t ChainRunner::run(const Textures& textures, const FrameInputs& frame, Timing timing,
+                               Watch watch) {
     inputs_.textures.clear();
     for (const std::string& name : plan_.attachments)
         inputs_.textures.push_back(textures.at(name));
@@ -55,7 +56,7 @@ std::uint32_t ChainRunner::run(const Textures& textures, const FrameInputs& fram
     inputs_.time = frame.time;
     inputs_.frame = frame.frame;
     inputs_.seed = frame.seed;
-    return executor_.run(inputs_, timing);
+    return executor_.run(inputs_, timing, watch);
 }
 
 Output output_for(const std::filesystem::path& file) {

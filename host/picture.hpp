@@ -27,7 +27,8 @@ public:
     void replan(const Facts& facts);
 
     /// Draw one frame. `textures` must hold what attachments() names. Returns the picture's texture.
-    std::uint32_t run(const Textures& textures, const FrameInputs& frame, Timing timing);
+    std::uint32_t run(const Textures& textures, const FrameInputs& frame, Timing timing,
+                      Watch watch = Watch::off);
 
     Executor& executor() { return executor_; }
     const Facts& facts() const { return facts_; }

@@ -8,6 +8,8 @@ namespace postfx::host {
 void ReportOptions::declare(CLI::App& app) {
     app.add_flag("--json", json_, "Tell the report as JSON");
     app.add_flag("--quiet,-q", quiet_, "Tell nothing but errors");
+    app.add_flag("--watch-nonfinite", watch_nonfinite_,
+                 "Tell which pass first makes pixels that are NaN or infinite: reads every image once more");
     app.add_flag("--no-times", no_times_, "Do not draw a second time to measure what each pass costs");
 }
 

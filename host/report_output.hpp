@@ -1,7 +1,7 @@
 // How a finished run is told: for people on stdout, or as JSON for scripts.
 #pragma once
 
-#include <postfx/report.hpp>
+#include <postfx/executor.hpp>
 
 #include <CLI/CLI.hpp>
 
@@ -10,16 +10,17 @@
 
 namespace postfx::host {
 
-/// --json, --quiet and --no-times of commands that run a chain.
+/// --json, --quiet, --no-times and --watch-nonfinite of commands that run a chain.
 class ReportOptions {
 public:
     void declare(CLI::App& app);
     bool wants_times() const { return !no_times_ && !quiet_; }
+    Watch watch() const { return watch_nonfinite_ ? Watch::nonfinite : Watch::off; }
     /// "wrote FILE" and the report, or {"output": FILE, ...report} as JSON.
     void tell(const Report& report, const std::filesystem::path& output) const;
 
 private:
-    bool json_ = false, quiet_ = false, no_times_ = false;
+    bool json_ = false, quiet_ = false, no_times_ = false, watch_nonfinite_ = false;
 };
 
 } // namespace postfx::host

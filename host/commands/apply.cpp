@@ -75,6 +75,7 @@ public:
         facts.camera = depth_options_.camera(facts.width, facts.height);
         facts.working_format = *format_by_name(working_);
         facts.fuse = !no_fuse_;
+        facts.fold = true;
         std::map<std::string, Image> images = attachments(facts);
         for (const auto& [name, image] : images)
             facts.attachments.push_back(name);
@@ -96,10 +97,11 @@ public:
         frame.time = time_;
         frame.frame = frame_;
         frame.seed = seed_;
-        runner.run(textures, frame, Timing::off);
+        runner.run(textures, frame, Timing::off, report_options_.watch());
         const bool has_alpha = color.image.channels == 4 || color.image.channels == 2;
         write_picture(runner, output_, has_alpha);
-        if (report_options_.wants_times()) runner.run(textures, frame, Timing::profile);
+        if (report_options_.wants_times())
+            runner.run(textures, frame, Timing::profile, report_options_.watch());
         report_options_.tell(runner.executor().report(), output_);
         return Status::success;
     }

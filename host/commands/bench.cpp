@@ -112,6 +112,9 @@ public:
             ->default_str("")
             ->allow_extra_args(false);
         app.add_flag("--unfused", unfused_, "Measure every chain without fusion as well");
+        app.add_flag("--live", live_,
+                     "Measure every chain with its values in uniforms as well, as while they are moved");
+        app.add_flag("--watch-nonfinite", watch_, "Measure every chain while it is watched for NaN as well");
         app.add_flag("--passes", passes_, "Tell every pass of the chains as well");
         app.add_flag("--with-scene", with_scene_, "Draw the scene in every sample, as a frame would");
         app.add_option("--samples", samples_, "Rounds; each measures everything once, in random order")
@@ -131,6 +134,7 @@ public:
         facts_ =
             scene_options_.facts(scene, scene_options_.time(), linear_ ? Output::linear : Output::display);
         facts_.working_format = *format_by_name(format_);
+        facts_.fold = true;
         const GlSession session;
         SceneRenderer renderer(scene);
         make_runners(catalog);
@@ -157,10 +161,13 @@ private:
         for (const std::string& name : chains_) {
             const Chain chain = read_chain_named(name, catalog);
             runners_.push_back({name, std::make_unique<ChainRunner>(chain, facts_)});
-            if (!unfused_) continue;
-            Facts apart = facts_;
-            apart.fuse = false;
-            runners_.push_back({name + " (unfused)", std::make_unique<ChainRunner>(chain, apart)});
+            Facts other = facts_;
+            other.fuse = false;
+            if (unfused_)
+                runners_.push_back({name + " (unfused)", std::make_unique<ChainRunner>(chain, other)});
+            other = facts_;
+            other.fold = false;
+            if (live_) runners_.push_back({name + " (live)", std::make_unique<ChainRunner>(chain, other)});
         }
     }
 
@@ -203,11 +210,17 @@ private:
         frame.time = scene_options_.time();
         for (const NamedRunner& named : runners_) {
             ChainRunner* runner = named.runner.get();
-            cases.push_back({named.name,
-                             framed([runner, textures, frame] { runner->run(textures, frame, Timing::off); }),
-                             {},
-                             {},
-                             {}});
+            const auto add = [&](const std::string& name, Watch watch) {
+                cases.push_back({name,
+                                 framed([runner, textures, frame, watch] {
+                                     runner->run(textures, frame, Timing::off, watch);
+                                 }),
+                                 {},
+                                 {},
+                                 {}});
+            };
+            add(named.name, Watch::off);
+            if (watch_) add(named.name + " (watched)", Watch::nonfinite);
         }
         if (passes_) frame_ = frame;
         textures_ = textures;
@@ -325,7 +338,8 @@ private:
     std::vector<std::string> chains_, rivals_;
     std::string format_ = "rgba16f";
     int samples_ = 21;
-    bool unfused_ = false, passes_ = false, with_scene_ = false, linear_ = false, json_ = false;
+    bool unfused_ = false, live_ = false, watch_ = false, passes_ = false, with_scene_ = false,
+         linear_ = false, json_ = false;
 
     Facts facts_;
     FrameInputs frame_;

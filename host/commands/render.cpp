@@ -70,6 +70,7 @@ public:
         const Scene scene = scene_options_.open();
         Facts facts = scene_options_.facts(scene, scene_options_.time(), output);
         facts.working_format = *format_by_name(working_);
+        facts.fold = frames_ == 1; // a moving camera would make new programs for every frame
         check_parent(output_);
 
         const GlSession session;
@@ -103,7 +104,7 @@ private:
             if (std::find(wanted.begin(), wanted.end(), name) == wanted.end()) wanted.push_back(name);
         }
         const Textures textures = textures_of(renderer.render(facts.width, facts.height, frame.time, wanted));
-        runner.run(textures, frame, Timing::off);
+        runner.run(textures, frame, Timing::off, report_options_.watch());
         write_picture(runner, frames_ == 1 ? fs::path(output_) : numbered(output_, index, frames_), false);
         for (const auto& [name, file] : saves_) {
             save_attachment(textures.at(name), name, frames_ == 1 ? file : numbered(file, index, frames_),
@@ -111,7 +112,7 @@ private:
         }
         // The first draw of a program compiles it on some drivers, so that costs are told of a second one.
         if (report_options_.wants_times() && index == frames_ - 1)
-            runner.run(textures, frame, Timing::profile);
+            runner.run(textures, frame, Timing::profile, report_options_.watch());
     }
 
     static void save_attachment(std::uint32_t texture, const std::string& name, const fs::path& file,

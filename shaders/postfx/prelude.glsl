@@ -8,8 +8,8 @@ struct Pixel {
     ivec2 size;    // of the target, pixels
 };
 
-// What changes from frame to frame. Angles and metres as in postfx/camera.hpp.
-layout(std140, binding = 0) uniform PostfxFrame {
+// What holds for the whole frame, as `u_frame`. Angles and metres as in postfx/camera.hpp.
+struct Frame {
     vec2 size;            // of the picture, pixels
     vec2 inverse_size;    // 1 / size
     vec2 depth_affine;    // scale, offset: 1/z (perspective) or z (orthographic) from a raw depth sample
@@ -21,7 +21,7 @@ layout(std140, binding = 0) uniform PostfxFrame {
     uint frame;           // counts frames; noise is a function of (pixel, frame, seed)
     uint seed;
     mat4 view_to_world;   // the camera looks down -z of its own space
-} u_frame;
+};
 
 // A pixel of the chain's stored colour. Here, before any effect's text, so that no effect can replace the texelFetch
 // that it uses (GLSL lets a shader redefine built-in functions).

@@ -305,3 +305,89 @@ TEST_CASE("a cache that can't be written does no harm") {
     const Image color = test_picture();
     CHECK_NOTHROW(executor.prepare(Planner().plan(chain_of({"tint"}), facts_of(color))));
 }
+
+// ---- compiled-in values
+
+TEST_CASE("folded values give what uniforms give") {
+    const Quiet quiet;
+    // Every kind of number, every kind of pass; this chain computes nothing that a compiler could round otherwise but
+    // contractions, so that a float step for each of its operations is more than enough.
+    const Chain chain = chain_of({"blur", "shift", "tint", "plain_c", "tint", "gauge"});
+    Facts facts = facts_of(test_picture());
+    const Image live = draw(chain, test_picture(), facts);
+    facts.fold = true;
+    CHECK(worst_steps(draw(chain, test_picture(), facts), live, float_step) <= 16);
+
+    const Image black(15, 2, 3);
+    facts = facts_of(black);
+    const Image packed = draw(chain_of({"tint", "pack"}), black, facts);
+    facts.fold = true;
+    CHECK(postfx::testing::same_bits(draw(chain_of({"tint", "pack"}), black, facts), packed));
+}
+
+TEST_CASE("two instances in one folded pass have their own values") {
+    const Quiet quiet;
+    Chain chain = chain_of({"tint", "tint"});
+    chain.find("tint")->values[1] = {2, 4, 1, 0};
+    chain.find("tint")->set("amount", 1);
+    chain.find("tint_2")->values[1] = {0.5, 0.5, 3, 0};
+    chain.find("tint_2")->set("amount", 1);
+    const Image color = postfx::testing::constant(3, 2, {1.0f, 2.0f, 3.0f});
+    Facts facts = facts_of(color);
+    facts.fold = true;
+    const Image result = draw(chain, color, facts);
+    CHECK(result.at(2, 1, 0) == 1);
+    CHECK(result.at(2, 1, 1) == 4);
+    CHECK(result.at(2, 1, 2) == 9);
+}
+
+// ---- watching for what is no number
+
+TEST_CASE("the first pass that makes a NaN is named") {
+    const Quiet quiet;
+    Image color = postfx::testing::constant(21, 9, {2.0f, 2.0f, 2.0f});
+    color.at(3, 4, 1) = 0.5f;
+    color.at(20, 8, 2) = 0.5f;
+    Chain chain = chain_of({"tint", "spoil"});
+    chain.find("spoil")->set("threshold", 1);
+    const Inputs inputs(color);
+    const Plan plan = Planner().plan(chain, facts_of(color));
+    Executor executor;
+    executor.prepare(plan);
+
+    executor.run(inputs.of(plan));
+    CHECK(!executor.report().nonfinite); // it costs: off unless asked for
+
+    for (int frame = 0; frame < 2; ++frame) { // counts of the frame before are forgotten
+        executor.run(inputs.of(plan), postfx::Timing::off, postfx::Watch::nonfinite);
+        const auto found = executor.report().nonfinite;
+        REQUIRE(found);
+        REQUIRE(found->size() == 3);
+        CHECK((*found)[0].name == "spoil/roots");
+        CHECK((*found)[0].made_here);
+        CHECK((*found)[0].pixels == 2);
+        CHECK((*found)[0].x == 3);
+        CHECK((*found)[0].y == 4);
+        CHECK((*found)[1].name == "spoil/squares");
+        CHECK(!(*found)[1].made_here);
+        CHECK(!(*found)[2].made_here);
+    }
+}
+
+TEST_CASE("a NaN of the input is nobody's fault") {
+    const Quiet quiet;
+    Image color = postfx::testing::constant(5, 5, {2.0f, 2.0f, 2.0f});
+    color.at(1, 2, 0) = std::numeric_limits<float>::infinity();
+    const Inputs inputs(color);
+    const Plan plan = Planner().plan(chain_of({"tint"}), facts_of(color));
+    Executor executor;
+    executor.prepare(plan);
+    executor.run(inputs.of(plan), postfx::Timing::profile, postfx::Watch::nonfinite);
+    const auto found = executor.report().nonfinite;
+    REQUIRE(found);
+    REQUIRE(found->size() == 2);
+    CHECK((*found)[0].name == "color");
+    CHECK(!(*found)[0].made_here);
+    CHECK((*found)[1].name == "tint");
+    CHECK(!(*found)[1].made_here);
+}

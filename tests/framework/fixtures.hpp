@@ -18,7 +18,7 @@ inline const Catalog& fixtures() {
     static const Catalog catalog = [] {
         Catalog made;
         for (const char* name : {"blur", "broken_shader", "curve", "faulty", "gauge", "grown", "many", "pack",
-                                 "plain_c", "shift", "sneaky", "split", "tint"}) {
+                                 "plain_c", "shift", "sneaky", "split", "spoil", "tint"}) {
             made.load(fixture(name));
         }
         return made;

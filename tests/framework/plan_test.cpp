@@ -499,3 +499,30 @@ TEST_CASE("a re-plan of nine effects is quick") {
     CHECK(microseconds[100] <= 20000); // unoptimised; only an accident is caught
 #endif
 }
+
+TEST_CASE("a value that a host set out of range is held to it, with a warning") {
+    Chain chain = chain_of({"tint"});
+    chain.entries[0].values[0][0] = 7;
+    Plan plan = plan_of(chain);
+    REQUIRE(plan.warnings.size() == 1);
+    CHECK(plan.warnings[0] == "tint: amount is 7, which is not within 0 to 1; 1 is used");
+    chain.entries[0].values[0][0] = std::numeric_limits<double>::quiet_NaN();
+    plan = plan_of(chain);
+    REQUIRE(plan.warnings.size() == 1);
+    CHECK(plan.warnings[0].starts_with("tint: amount is nan, which is not within 0 to 1; "));
+    CHECK(plan_of(chain_of({"tint"})).warnings.empty());
+}
+
+TEST_CASE("folded, the same values share a program, others do not") {
+    Facts facts = facts_of();
+    facts.fold = true;
+    Planner planner;
+    Chain chain = chain_of({"tint"});
+    const Plan first = planner.plan(chain, facts);
+    CHECK(first.passes[0].uniform_block.empty());
+    CHECK(planner.plan(chain, facts).passes[0].program == first.passes[0].program);
+    chain.entries[0].set("amount", 0.125);
+    CHECK(planner.plan(chain, facts).passes[0].program->key != first.passes[0].program->key);
+    facts.fold = false;
+    CHECK(planner.plan(chain, facts).passes[0].program->key != first.passes[0].program->key);
+}

@@ -28,6 +28,11 @@ enum class Timing {
              ///< GL
 };
 
+enum class Watch {
+    off,
+    nonfinite, ///< count NaN and infinite pixels of every input and after every pass: one more read of each image
+};
+
 class Executor {
 public:
     /// `program_cache`: directory for linked programs between runs; empty = none.
@@ -43,7 +48,7 @@ public:
     /// Draw the current plan. Creates no GL object and allocates no heap memory once it has run twice after
     /// prepare(). Returns the GL name of the picture's texture: the executor's own, valid until the next
     /// call, or an input.
-    std::uint32_t run(const FrameInputs& inputs, Timing timing = Timing::off);
+    std::uint32_t run(const FrameInputs& inputs, Timing timing = Timing::off, Watch watch = Watch::off);
 
     /// What the last run did and cost.
     Report report() const;

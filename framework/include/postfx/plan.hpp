@@ -29,6 +29,9 @@ struct Facts {
     bool color_is_8bit =
         false;        ///< the picture came as 8-bit codes: with nothing to do, they are not dithered
     bool fuse = true; ///< false: every effect writes its own target
+    /// Compile all values, sizes and the projection into the shaders: quicker passes, but whatever changes one of
+    /// them makes a new program (tens of milliseconds). For pictures and for measuring, not while values are moved.
+    bool fold = false;
 };
 
 /// A texture that a pass reads or writes: an attachment of the scene, or a target of the plan.
@@ -67,7 +70,7 @@ struct Pass {
     std::vector<ImageRef> outputs; ///< all targets of one size
     int width = 0, height = 0;
     Format format = Format::rgba16f;      ///< of the first output
-    std::vector<std::byte> uniform_block; ///< std140 bytes for binding 1
+    std::vector<std::byte> uniform_block; ///< std140 bytes for binding 1; empty when they are compiled in
 };
 
 enum class EffectStatus { ran, fused, skipped };

@@ -20,20 +20,29 @@ struct PassReport {
     std::optional<double> gpu_ms;   ///< GL timestamps
 };
 
+/// An image with pixels that are no numbers (NaN or infinite).
+struct NonfiniteImage {
+    std::string name; ///< attachment, or the pass that wrote it
+    std::size_t pixels = 0;
+    int x = 0, y = 0;       ///< the first, from the bottom left
+    bool made_here = false; ///< nothing that the pass read had any
+};
+
 struct Report {
     std::vector<PlannedEffect> effects;
     std::vector<PassReport> passes;
     std::string clock; ///< which clock the times come from, and why that one
     std::size_t texture_bytes = 0;
     std::vector<std::string> warnings;
+    std::optional<std::vector<NonfiniteImage>> nonfinite; ///< in order of drawing; absent: was not watched
 };
 
 /// The plan's part of a report: everything but times.
 Report describe(const Plan& plan);
 
 /// {"effects": [{"id", "name", "status", "moment", "reason"}], "passes": [{"name", "effects", "width",
-/// "height", "format", "reads", "cpu_ms", "gpu_ms"}], "clock", "texture_bytes", "warnings"}; absent times are
-/// null.
+/// "height", "format", "reads", "cpu_ms", "gpu_ms"}], "clock", "texture_bytes", "warnings", "nonfinite": [{"name", "pixels", "x", "y",
+/// "made_here"}]}; what was not measured or watched is null.
 std::string report_json(const Report& report);
 /// The same for people.
 std::string report_text(const Report& report);

@@ -1,7 +1,9 @@
+#include <execute/nonfinite_watch.hpp>
 #include <execute/program_cache.hpp>
 #include <gl/clock.hpp>
 #include <gl/context.hpp>
 #include <gl/objects.hpp>
+#include <plan/frame_block.hpp>
 
 #include <postfx/error.hpp>
 #include <postfx/executor.hpp>
@@ -15,39 +17,11 @@
 namespace postfx {
 namespace {
 
-/// The block at binding 0, as shaders/postfx/prelude.glsl declares it (std140).
-struct FrameBlock {
-    float size[2], inverse_size[2];
-    float depth_affine[2];
-    float sky_depth, near_plane;
-    float half_extent[2];
-    std::int32_t orthographic;
-    float time;
-    std::uint32_t frame, seed;
-    float padding[2];
-    float view_to_world[16];
-};
-static_assert(sizeof(FrameBlock) == 128);
-
-FrameBlock frame_block(const Plan& plan, const FrameInputs& inputs) {
-    const Camera& camera = inputs.camera;
-    const double half_height = camera.orthographic ? camera.vertical_extent / 2 : camera.tan_half_fov();
-    FrameBlock block{};
-    block.size[0] = static_cast<float>(plan.width);
-    block.size[1] = static_cast<float>(plan.height);
-    block.inverse_size[0] = static_cast<float>(1.0 / plan.width);
-    block.inverse_size[1] = static_cast<float>(1.0 / plan.height);
-    block.depth_affine[0] = static_cast<float>(camera.depth_scale);
-    block.depth_affine[1] = static_cast<float>(camera.depth_offset);
-    block.sky_depth = static_cast<float>(camera.sky_depth);
-    block.near_plane = static_cast<float>(camera.near_plane);
-    block.half_extent[0] = static_cast<float>(half_height * plan.width / plan.height);
-    block.half_extent[1] = static_cast<float>(half_height);
-    block.orthographic = camera.orthographic;
+FrameBlock block_of(const Plan& plan, const FrameInputs& inputs) {
+    FrameBlock block = frame_block(plan.width, plan.height, inputs.camera);
     block.time = static_cast<float>(inputs.time);
     block.frame = inputs.frame;
     block.seed = inputs.seed;
-    std::copy(camera.view_to_world.begin(), camera.view_to_world.end(), block.view_to_world);
     return block;
 }
 
@@ -100,7 +74,7 @@ struct Executor::State {
         glBindFramebuffer(GL_DRAW_FRAMEBUFFER, ready_pass.framebuffer.name());
         glViewport(0, 0, pass.width, pass.height);
         glUseProgram(ready_pass.program);
-        glBindBufferBase(GL_UNIFORM_BUFFER, 1, ready_pass.block.name());
+        if (ready_pass.block) glBindBufferBase(GL_UNIFORM_BUFFER, 1, ready_pass.block.name());
         for (std::size_t unit = 0; unit < pass.inputs.size(); ++unit) {
             const PassInput& input = pass.inputs[unit];
             glBindTextureUnit(static_cast<GLuint>(unit), texture(current, input.image, attachments));
@@ -117,7 +91,9 @@ struct Executor::State {
     std::vector<PassTime> profile; ///< of the last profiled run
     std::optional<gl::TimestampRing> ring;
     std::optional<gl::ClockCheck> clock;
+    std::optional<NonfiniteWatch> watch;
     Timing last_timing = Timing::off;
+    Watch last_watch = Watch::off;
     bool prepared = false;
     GLuint picture = 0; ///< of the last run; 0 = there was none since prepare()
 };
@@ -183,18 +159,20 @@ void Executor::prepare(const Plan& plan) {
             outputs.push_back(ready.targets[output.index]->name());
         ready.passes[i].framebuffer = gl::make_framebuffer(outputs);
         const auto& bytes = plan.passes[i].uniform_block;
-        ready.passes[i].block = gl::make_buffer(bytes.size(), bytes.data());
+        if (!bytes.empty()) ready.passes[i].block = gl::make_buffer(bytes.size(), bytes.data());
     }
     ready.plan = plan;
     state.current = std::move(ready);
     state.profile.assign(plan.passes.size(), {});
     state.ring.reset();
+    state.watch.reset();
     state.last_timing = Timing::off;
+    state.last_watch = Watch::off;
     state.prepared = true;
     state.picture = 0;
 }
 
-std::uint32_t Executor::run(const FrameInputs& inputs, Timing timing) {
+std::uint32_t Executor::run(const FrameInputs& inputs, Timing timing, Watch watch) {
     State& state = *state_;
     const Plan& plan = state.current.plan;
     if (!state.prepared) throw Error("run() before any prepare()");
@@ -206,12 +184,19 @@ std::uint32_t Executor::run(const FrameInputs& inputs, Timing timing) {
     if (timing == Timing::gpu && !state.ring) state.ring.emplace(plan.passes.size());
     if (timing != Timing::off && !state.clock) state.clock = gl::check_clock();
     state.last_timing = timing;
+    if (watch == Watch::nonfinite && !state.watch) state.watch.emplace(plan);
+    state.last_watch = watch;
 
-    const FrameBlock block = frame_block(plan, inputs);
+    const FrameBlock block = block_of(plan, inputs);
     glNamedBufferSubData(state.frame_buffer.name(), 0, sizeof(block), &block);
     glBindBufferBase(GL_UNIFORM_BUFFER, 0, state.frame_buffer.name());
     glBindVertexArray(state.vertex_array.name());
 
+    if (watch == Watch::nonfinite) {
+        state.watch->begin_frame();
+        for (GLuint attachment : inputs.textures)
+            state.watch->count(attachment, plan.width, plan.height);
+    }
     if (timing == Timing::gpu) {
         state.ring->begin_frame();
         state.ring->mark();
@@ -228,6 +213,13 @@ std::uint32_t Executor::run(const FrameInputs& inputs, Timing timing) {
         } else if (timing == Timing::gpu) {
             state.ring->mark();
         }
+        if (watch == Watch::nonfinite) {
+            for (const ImageRef& output : plan.passes[i].outputs) {
+                state.watch->count(state.texture(state.current, output, inputs.textures),
+                                   plan.passes[i].width, plan.passes[i].height);
+            }
+            if (timing == Timing::profile) glFinish(); // not to be counted in the next pass\'s time
+        }
     }
     if (timing == Timing::gpu) state.ring->end_frame();
     // The host's own draws must not sample through our sampler objects.
@@ -242,6 +234,7 @@ std::uint32_t Executor::run(const FrameInputs& inputs, Timing timing) {
 Report Executor::report() const {
     const State& state = *state_;
     Report report = describe(state.current.plan);
+    if (state.last_watch == Watch::nonfinite) report.nonfinite = state.watch->findings(state.current.plan);
     if (state.last_timing == Timing::profile) {
         for (std::size_t i = 0; i < report.passes.size(); ++i) {
             report.passes[i].cpu_ms = state.profile[i].cpu_ms;

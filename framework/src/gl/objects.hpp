@@ -91,5 +91,8 @@ Sampler make_sampler(bool linear);
 /// `what` names the program in the message; may be empty.
 Program make_program(std::string_view vertex, std::string_view fragment, const std::string& what,
                      const std::vector<std::string>& files = {});
+/// The same of one compute shader.
+Program make_compute_program(std::string_view compute, const std::string& what,
+                             const std::vector<std::string>& files = {});
 
 } // namespace postfx::gl

@@ -2,6 +2,8 @@
 #include <gl/program_log.hpp>
 
 #include <array>
+#include <span>
+#include <utility>
 
 namespace postfx::gl {
 namespace {
@@ -34,18 +36,13 @@ std::string program_log(GLuint program) {
     return log;
 }
 
-} // namespace
-
-void destroy_program(GLuint name) {
-    glDeleteProgram(name);
-}
-
-Program make_program(std::string_view vertex, std::string_view fragment, const std::string& what,
-                     const std::vector<std::string>& files) {
-    const std::array<NumberedSource, 2> sources = {NumberedSource(vertex), NumberedSource(fragment)};
+/// Compile all stages, then link them.
+Program link(std::span<const std::pair<GLenum, NumberedSource>> stages, const std::string& what,
+             const std::vector<std::string>& files) {
     // Nothing is asked before linking, so that a driver that compiles in parallel is not waited for twice.
-    const std::array<Shader, 2> shaders = {start_compile(GL_VERTEX_SHADER, sources[0]),
-                                           start_compile(GL_FRAGMENT_SHADER, sources[1])};
+    std::vector<Shader> shaders;
+    for (const auto& [stage, source] : stages)
+        shaders.push_back(start_compile(stage, source));
     Program program(glCreateProgram());
     glProgramParameteri(program.name(), GL_PROGRAM_BINARY_RETRIEVABLE_HINT, GL_TRUE);
     for (const Shader& shader : shaders)
@@ -57,13 +54,33 @@ Program make_program(std::string_view vertex, std::string_view fragment, const s
         for (std::size_t i = 0; i < shaders.size(); ++i) {
             GLint compiled = GL_FALSE;
             glGetShaderiv(shaders[i].name(), GL_COMPILE_STATUS, &compiled);
-            if (!compiled) throw program_error(shader_log(shaders[i].name()), what, sources[i], files);
+            if (!compiled) throw program_error(shader_log(shaders[i].name()), what, stages[i].second, files);
         }
-        throw program_error(program_log(program.name()), what, sources[1], files);
+        throw program_error(program_log(program.name()), what, stages.back().second, files);
     }
     for (const Shader& shader : shaders)
         glDetachShader(program.name(), shader.name()); // so it can be freed
     return program;
+}
+
+} // namespace
+
+void destroy_program(GLuint name) {
+    glDeleteProgram(name);
+}
+
+Program make_program(std::string_view vertex, std::string_view fragment, const std::string& what,
+                     const std::vector<std::string>& files) {
+    const std::array<std::pair<GLenum, NumberedSource>, 2> stages = {
+        std::pair(GLenum{GL_VERTEX_SHADER}, NumberedSource(vertex)),
+        std::pair(GLenum{GL_FRAGMENT_SHADER}, NumberedSource(fragment))};
+    return link(stages, what, files);
+}
+
+Program make_compute_program(std::string_view compute, const std::string& what,
+                             const std::vector<std::string>& files) {
+    const std::array stages = {std::pair(GLenum{GL_COMPUTE_SHADER}, NumberedSource(compute))};
+    return link(stages, what, files);
 }
 
 } // namespace postfx::gl

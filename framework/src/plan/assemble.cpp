@@ -7,7 +7,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <bit>
 #include <cctype>
+#include <cmath>
 #include <cstring>
 #include <functional>
 #include <set>
@@ -42,7 +44,11 @@ std::string struct_name(const Stage& stage) {
 /// A GLSL literal that reads back as the same float.
 std::string literal(double value, bool integer) {
     if (integer) return fmt::format("{}", static_cast<long long>(value));
-    std::string text = fmt::format("{:.9g}", static_cast<float>(value));
+    const float narrow = static_cast<float>(value);
+    if (!std::isfinite(narrow)) {
+        return fmt::format("uintBitsToFloat({:#x}u)", std::bit_cast<std::uint32_t>(narrow));
+    }
+    std::string text = fmt::format("{:.9g}", narrow);
     if (text.find_first_of(".en") == std::string::npos) text += ".0";
     return text;
 }
@@ -59,12 +65,76 @@ std::string constant_line(const RecordedNumber& constant) {
                        literal(constant.value[0], constant.integer));
 }
 
+bool is_integer(const BlockMember& member) {
+    return member.type[0] == 'i' || member.type[0] == 'b';
+}
+
+/// "vec3(0.1, 0.2, 0.3)", "true", "7".
+std::string constructor(const BlockMember& member) {
+    if (member.type == "bool") return member.value[0] != 0 ? "true" : "false";
+    std::string list;
+    for (int i = 0; i < member.components; ++i) {
+        list += (i ? ", " : "") + literal(member.value[i], is_integer(member));
+    }
+    return member.components == 1 ? list : fmt::format("{}({})", member.type, list);
+}
+
+std::string constructor(const Stage& stage) {
+    std::string list;
+    for (const BlockMember& member : stage.members)
+        list += (list.empty() ? "" : ", ") + constructor(member);
+    return fmt::format("{}({})", struct_name(stage), list.empty() ? "0.0" : list);
+}
+
+BlockMember target_size(const Numbers& numbers) {
+    return {"target",
+            "vec4",
+            {double(numbers.width), double(numbers.height), 1.0 / numbers.width, 1.0 / numbers.height},
+            4};
+}
+
+/// `u_frame`: the block at binding 0, or, folded, a variable of which only the changing part is read from it.
+std::string frame_declaration(const Numbers& numbers) {
+    constexpr std::string_view block = "layout(std140, binding = 0) uniform PostfxFrame {{ Frame {}; }};\n";
+    if (!numbers.folded) return fmt::format(block, "u_frame");
+    const FrameBlock& frame = numbers.frame;
+    const auto pair = [](const float(&xy)[2]) {
+        return fmt::format("vec2({}, {})", literal(xy[0], false), literal(xy[1], false));
+    };
+    return fmt::format(block, "u_live_frame")
+           + fmt::format("Frame u_frame = Frame({}, {}, {}, {}, {}, {}, {}, u_live_frame.time, "
+                         "u_live_frame.frame, u_live_frame.seed, u_live_frame.view_to_world);\n",
+                         pair(frame.size), pair(frame.inverse_size), pair(frame.depth_affine),
+                         literal(frame.sky_depth, false), literal(frame.near_plane, false),
+                         pair(frame.half_extent), frame.orthographic ? "true" : "false");
+}
+
+/// `target` (size and inverse size of what is drawn to) and a struct `stage_N` of each stage: members of the
+/// block at binding 1, or constants.
+std::string numbers_declaration(const std::vector<Stage>& stages, const Numbers& numbers) {
+    std::string text;
+    if (numbers.folded) {
+        text = fmt::format("const vec4 target = {};\n", constructor(target_size(numbers)));
+        for (std::size_t i = 0; i < stages.size(); ++i) {
+            text +=
+                fmt::format("const {} stage_{} = {};\n", struct_name(stages[i]), i, constructor(stages[i]));
+        }
+        return text;
+    }
+    text = "layout(std140, binding = 1) uniform PostfxStages {\n    vec4 target;\n";
+    for (std::size_t i = 0; i < stages.size(); ++i) {
+        text += fmt::format("    {} stage_{};\n", struct_name(stages[i]), i);
+    }
+    return text + "};\n";
+}
+
 /// Collects a program: every file once, every constant and struct once.
 class Assembly {
 public:
-    Assembly() {
+    explicit Assembly(const Numbers& numbers) {
         program_.text = "#version 450 core\n";
         library("prelude.glsl", Place{});
+        generated(frame_declaration(numbers));
     }
 
     void library(std::string_view name, const Place& asked_from) {
@@ -150,14 +220,6 @@ private:
     std::set<std::string> constants_;
 };
 
-std::string block_declaration(const std::vector<Stage>& stages) {
-    std::string text = "layout(std140, binding = 1) uniform PostfxStages {\n    vec4 target;\n";
-    for (std::size_t i = 0; i < stages.size(); ++i) {
-        text += fmt::format("    {} stage_{};\n", struct_name(stages[i]), i);
-    }
-    return text + "} u_stages;\n";
-}
-
 std::string sampler_name(std::size_t stage, const std::string& sampler) {
     return fmt::format("u_stage_{}_{}", stage, sampler);
 }
@@ -175,16 +237,16 @@ std::string sampler_declarations(const std::vector<Stage>& stages, int first_uni
 }
 
 std::string arguments(const std::vector<Stage>& stages, std::size_t i) {
-    std::string text = fmt::format("pixel, u_stages.stage_{}", i);
+    std::string text = fmt::format("pixel, stage_{}", i);
     for (const std::string& sampler : stages[i].samplers)
         text += ", " + sampler_name(i, sampler);
     return text;
 }
 
-constexpr std::string_view main_start = "void main() {\n"
-                                        "    const Pixel pixel = Pixel(ivec2(gl_FragCoord.xy), "
-                                        "gl_FragCoord.xy, gl_FragCoord.xy * u_stages.target.zw,\n"
-                                        "                              ivec2(u_stages.target.xy));\n";
+constexpr std::string_view main_start =
+    "void main() {\n"
+    "    const Pixel pixel = Pixel(ivec2(gl_FragCoord.xy), gl_FragCoord.xy, gl_FragCoord.xy * target.zw,\n"
+    "                              ivec2(target.xy));\n";
 
 /// Writes numbers where std140 wants them.
 class Std140 {
@@ -196,9 +258,8 @@ public:
     void member(const BlockMember& member) {
         constexpr std::size_t alignments[] = {0, 4, 8, 16, 16};
         align(alignments[member.components]);
-        const bool integer = member.type[0] == 'i' || member.type[0] == 'b';
         for (int i = 0; i < member.components; ++i) {
-            if (integer) {
+            if (is_integer(member)) {
                 append(static_cast<std::int32_t>(member.value[i]));
             } else {
                 append(static_cast<float>(member.value[i]));
@@ -295,13 +356,13 @@ std::string why_not_together(const Stage& a, const Stage& b) {
     return "";
 }
 
-ProgramSource assemble_compose(const std::vector<Stage>& stages, Encoding encoding) {
-    Assembly assembly;
+ProgramSource assemble_compose(const std::vector<Stage>& stages, Encoding encoding, const Numbers& numbers) {
+    Assembly assembly(numbers);
     for (const Stage& stage : stages)
         assembly.function(stage);
     if (encoding != Encoding::none) assembly.library("output.glsl", Place{});
     // Declared only now, so that no effect's function can name the chain's stored colour.
-    assembly.generated(block_declaration(stages));
+    assembly.generated(numbers_declaration(stages, numbers));
     assembly.generated("layout(binding = 0) uniform sampler2D u_color;\n");
     assembly.generated(sampler_declarations(stages, 1));
     assembly.generated("layout(location = 0) out vec4 o_color;\n");
@@ -319,10 +380,10 @@ ProgramSource assemble_compose(const std::vector<Stage>& stages, Encoding encodi
     return assembly.finish();
 }
 
-ProgramSource assemble_fragment(const Stage& stage, int outputs) {
-    Assembly assembly;
+ProgramSource assemble_fragment(const Stage& stage, int outputs, const Numbers& numbers) {
+    Assembly assembly(numbers);
     assembly.function(stage);
-    assembly.generated(block_declaration({stage}));
+    assembly.generated(numbers_declaration({stage}, numbers));
     assembly.generated(sampler_declarations({stage}, 0));
     for (int i = 0; i < outputs; ++i) {
         assembly.generated(fmt::format("layout(location = {}) out vec4 o_{};\n", i, i));
@@ -340,7 +401,7 @@ ProgramSource assemble_fragment(const Stage& stage, int outputs) {
     return assembly.finish();
 }
 
-std::string program_key(const std::vector<Stage>& stages, std::string_view form) {
+std::string program_key(const std::vector<Stage>& stages, std::string_view form, const Numbers& numbers) {
     std::string key(form);
     for (const Stage& stage : stages) {
         key += fmt::format("|{}:{}", static_cast<const void*>(stage.source), stage.samplers.size());
@@ -349,13 +410,15 @@ std::string program_key(const std::vector<Stage>& stages, std::string_view form)
         for (const RecordedNumber& constant : stage.constants) {
             key += fmt::format(",{}={}", constant.name, literal(constant.value[0], constant.integer));
         }
+        if (numbers.folded) key += "=" + constructor(stage);
     }
-    return key;
+    return numbers.folded ? key + numbers_declaration({}, numbers) + frame_declaration(numbers) : key;
 }
 
-std::vector<std::byte> uniform_block(const std::vector<Stage>& stages, int width, int height) {
+std::vector<std::byte> uniform_block(const std::vector<Stage>& stages, const Numbers& numbers) {
+    if (numbers.folded) return {};
     Std140 block;
-    block.member({"target", "vec4", {double(width), double(height), 1.0 / width, 1.0 / height}, 4});
+    block.member(target_size(numbers));
     for (const Stage& stage : stages)
         block.structure(stage);
     return block.finish();

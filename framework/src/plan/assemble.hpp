@@ -2,6 +2,7 @@
 // samplers, main(). Nothing of the author's text is changed but #include lines.
 #pragma once
 
+#include <plan/frame_block.hpp>
 #include <plan/record.hpp>
 
 #include <postfx/plan.hpp>
@@ -44,21 +45,29 @@ std::string why_not_together(const Stage& a, const Stage& b);
 
 enum class Encoding { none, srgb, srgb_dithered };
 
+/// How a pass's program gets its numbers: from uniform blocks, or compiled in (Facts::fold).
+struct Numbers {
+    int width = 0, height = 0; ///< of the pass's target
+    bool folded = false;
+    FrameBlock frame; ///< when folded: what of it does not change from frame to frame is compiled in
+};
+
 /// The program of a fused pass: every stage's function in turn on the pixel's own colour, then the encoding.
 /// Texture units: 0 is the stored colour, then every stage's samplers in order.
-ProgramSource assemble_compose(const std::vector<Stage>& stages, Encoding encoding);
+ProgramSource assemble_compose(const std::vector<Stage>& stages, Encoding encoding, const Numbers& numbers);
 
 /// The program of a pass of its own. Texture units: the stage's samplers in order.
-ProgramSource assemble_fragment(const Stage& stage, int outputs);
+ProgramSource assemble_fragment(const Stage& stage, int outputs, const Numbers& numbers);
 
 /// Names everything that is compiled in, so that equal keys have equal programs.
-std::string program_key(const std::vector<Stage>& stages, std::string_view form);
+std::string program_key(const std::vector<Stage>& stages, std::string_view form, const Numbers& numbers);
 
 /// Size of the uniform block without its structs, and of one stage's struct; both multiples of 16.
 inline constexpr std::size_t block_head_bytes = 16;
 std::size_t struct_bytes(const Stage& stage);
 
 /// std140 bytes of the block that both programs declare at binding 1: target size, then one struct per stage.
-std::vector<std::byte> uniform_block(const std::vector<Stage>& stages, int width, int height);
+/// Empty when they are compiled in.
+std::vector<std::byte> uniform_block(const std::vector<Stage>& stages, const Numbers& numbers);
 
 } // namespace postfx

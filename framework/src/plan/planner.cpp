@@ -9,6 +9,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 #include <unordered_map>
 
 namespace postfx {
@@ -38,13 +39,15 @@ public:
     };
     using Programs = std::unordered_map<std::string, KnownProgram>;
 
-    Walk(const Facts& facts, Programs& programs) : facts_(facts), programs_(programs) {
+    Walk(const Facts& facts, Programs& programs)
+        : facts_(facts), programs_(programs), frame_(frame_block(facts.width, facts.height, facts.camera)) {
         plan_.width = facts.width;
         plan_.height = facts.height;
         stored_ = attachment("color");
     }
 
-    void add(const ChainEntry& entry) {
+    void add(const ChainEntry& given) {
+        const ChainEntry entry = within_ranges(given);
         plan_.effects.push_back({entry.name, entry.effect->id, EffectStatus::ran, "", "", ""});
         if (!entry.enabled) return skip({"configuration", "exact", "enabled is false"});
         const Recording recording = record(entry, facts_);
@@ -64,6 +67,24 @@ public:
     }
 
 private:
+    /// Files are checked where they are read; values that a host set itself are held to their ranges here.
+    ChainEntry within_ranges(ChainEntry entry) {
+        for (std::size_t i = 0; i < entry.values.size(); ++i) {
+            const ParameterInfo& parameter = entry.effect->parameters[i];
+            for (int c = 0; c < parameter.components(); ++c) {
+                double& value = entry.values[i][c];
+                const double given = value;
+                value = std::isnan(given) ? parameter.default_value[c]
+                                          : std::clamp(given, parameter.minimum, parameter.maximum);
+                if (value == given) continue;
+                plan_.warnings.push_back(fmt::format("{}: {} is {}, which is not within {} to {}; {} is used",
+                                                     entry.name, parameter.id, given, parameter.minimum,
+                                                     parameter.maximum, value));
+            }
+        }
+        return entry;
+    }
+
     void skip(const Identity& identity) {
         PlannedEffect& planned = plan_.effects.back();
         planned.status = EffectStatus::skipped;
@@ -78,6 +99,8 @@ private:
         if (index == std::ssize(names)) names.push_back(name);
         return {ImageRef::Kind::attachment, static_cast<int>(index)};
     }
+
+    Numbers numbers_of(int width, int height) const { return {width, height, facts_.fold, frame_}; }
 
     ImageRef new_target(int width, int height, Format format) {
         plan_.targets.push_back({width, height, format});
@@ -124,8 +147,9 @@ private:
         pass.name = entry.name + "/" + recorded.name;
         pass.effects = {entry.name};
         const int output_count = static_cast<int>(recorded.formats.size());
-        pass.program = program(stages, fmt::format("fragment {}", output_count),
-                               [&] { return assemble_fragment(stages.front(), output_count); });
+        const Numbers numbers = numbers_of(recorded.width, recorded.height);
+        pass.program = program(stages, fmt::format("fragment {}", output_count), numbers,
+                               [&] { return assemble_fragment(stages.front(), output_count, numbers); });
         pass.inputs = std::move(inputs);
         for (Format format : recorded.formats) {
             pass.outputs.push_back(new_target(recorded.width, recorded.height, format));
@@ -133,7 +157,7 @@ private:
         pass.width = recorded.width;
         pass.height = recorded.height;
         pass.format = recorded.formats.front();
-        pass.uniform_block = uniform_block(stages, pass.width, pass.height);
+        pass.uniform_block = uniform_block(stages, numbers);
         plan_.passes.push_back(std::move(pass));
         return plan_.passes.back().outputs;
     }
@@ -174,13 +198,14 @@ private:
         std::vector<std::string> parts = pass.effects;
         if (encoding != Encoding::none) parts.emplace_back("output");
         pass.name = fmt::format("{}", fmt::join(parts, "+"));
-        pass.program = program(stages, fmt::format("compose {}", static_cast<int>(encoding)),
-                               [&] { return assemble_compose(stages, encoding); });
+        const Numbers numbers = numbers_of(facts_.width, facts_.height);
+        pass.program = program(stages, fmt::format("compose {}", static_cast<int>(encoding)), numbers,
+                               [&] { return assemble_compose(stages, encoding, numbers); });
         pass.format = encoding == Encoding::none ? facts_.working_format : Format::rgba8;
         pass.outputs = {new_target(facts_.width, facts_.height, pass.format)};
         pass.width = facts_.width;
         pass.height = facts_.height;
-        pass.uniform_block = uniform_block(stages, pass.width, pass.height);
+        pass.uniform_block = uniform_block(stages, numbers);
         plan_.passes.push_back(std::move(pass));
         stored_ = plan_.passes.back().outputs.front();
         waiting_.clear();
@@ -202,8 +227,8 @@ private:
 
     template<class Make>
     std::shared_ptr<const ProgramSource> program(const std::vector<Stage>& stages, const std::string& form,
-                                                 Make make) {
-        KnownProgram& found = programs_[program_key(stages, form)];
+                                                 const Numbers& numbers, Make make) {
+        KnownProgram& found = programs_[program_key(stages, form, numbers)];
         if (!found.source) {
             found.source = std::make_shared<const ProgramSource>(make());
             for (const Stage& stage : stages)
@@ -244,6 +269,7 @@ private:
 
     const Facts& facts_;
     Programs& programs_;
+    FrameBlock frame_;
     Plan plan_;
     ImageRef stored_;
     std::vector<WaitingStage> waiting_;

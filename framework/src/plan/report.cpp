@@ -106,6 +106,17 @@ std::string report_json(const Report& report) {
     json["clock"] = report.clock;
     json["texture_bytes"] = report.texture_bytes;
     json["warnings"] = report.warnings;
+    json["nonfinite"] = nullptr;
+    if (report.nonfinite) {
+        json["nonfinite"] = nlohmann::ordered_json::array();
+        for (const NonfiniteImage& image : *report.nonfinite) {
+            json["nonfinite"].push_back({{"name", image.name},
+                                         {"pixels", image.pixels},
+                                         {"x", image.x},
+                                         {"y", image.y},
+                                         {"made_here", image.made_here}});
+        }
+    }
     return json.dump(2);
 }
 
@@ -131,6 +142,11 @@ std::string report_text(const Report& report) {
                         static_cast<double>(report.texture_bytes) / (1024 * 1024), report.clock);
     for (const std::string& warning : report.warnings)
         text += fmt::format("warning   {}\n", warning);
+    if (report.nonfinite && report.nonfinite->empty()) text += "non-finite  none in any image\n";
+    for (const NonfiniteImage& image : report.nonfinite.value_or(std::vector<NonfiniteImage>{})) {
+        text += fmt::format("non-finite  {}: {} pixels, the first at ({}, {}){}\n", image.name, image.pixels,
+                            image.x, image.y, image.made_here ? "; made by this pass" : "");
+    }
     return text;
 }
 
