@@ -85,6 +85,27 @@ struct SparkOptions {
 /// Small lights of a far-away town, one sphere each, tinted. Slot "light". `terrain` may be null.
 MadeParts make_sparks(const Terrain* terrain, const SparkOptions& options);
 
+struct TwigOptions {
+    std::uint32_t seed = 1;
+    int count = 7;                         ///< stems
+    float height = 0.4f;                   ///< metres that the longest reaches
+    float spread = 0.35f;                  ///< how far the tips lean out, as a share of the height
+    float thickness = 0.0012f;             ///< radius of a stem at its foot, metres
+    glm::vec2 bud_range{0.0025f, 0.0045f}; ///< radius of the buds, metres
+};
+/// Dry branching stems from one foot at the origin, as in a vase. Slots "stem" and "bud".
+MadeParts make_twigs(const TwigOptions& options);
+
+struct LightStringOptions {
+    std::uint32_t seed = 1;
+    double spacing = 0.1; ///< metres of the path from light to light
+    float size = 0.006f;  ///< radius of a light, metres
+    float wire = 0.001f;  ///< radius of the wire, metres
+    std::vector<glm::vec3> colors{glm::vec3(1)};
+};
+/// Small lights on a wire that hangs along a path. Slots "wire" and "light".
+MadeParts make_light_string(const Path& path, const LightStringOptions& options);
+
 /// A car 4.4 m long that looks along -z, wheels on y = 0.
 /// Slots "paint", "glass", "tyre", "rim", "trim", "head_lamp", "tail_lamp", "indicator", "plate".
 MadeParts make_car();

@@ -1,5 +1,6 @@
 #include "geometry.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -35,6 +36,29 @@ void revolve(Mesh& mesh, const std::vector<ProfilePoint>& profile, int segments)
             if (profile[band + 1].radius > 0) mesh.triangle(at, at + 3, at + 1);
         }
     }
+}
+
+/// Three more points on the Catmull-Rom spline between each pair; runs end where a point is repeated.
+std::vector<glm::vec2> smoothed(const std::vector<glm::vec2>& points) {
+    constexpr int pieces = 4;
+    std::vector<glm::vec2> result;
+    for (std::size_t i = 0; i + 1 < points.size(); ++i) {
+        const glm::vec2 b = points[i], c = points[i + 1];
+        result.push_back(b);
+        if (b == c) continue;
+        const glm::vec2 a = i > 0 && points[i - 1] != b ? points[i - 1] : 2.0f * b - c;
+        const glm::vec2 d = i + 2 < points.size() && points[i + 2] != c ? points[i + 2] : 2.0f * c - b;
+        for (int k = 1; k < pieces; ++k) {
+            const float t = static_cast<float>(k) / pieces;
+            const glm::vec2 point =
+                b
+                + 0.5f * t
+                      * (c - a + t * (2.0f * a - 5.0f * b + 4.0f * c - d + t * (3.0f * (b - c) + d - a)));
+            result.push_back({std::max(point.x, 0.0f), point.y});
+        }
+    }
+    result.push_back(points.back());
+    return result;
 }
 
 } // namespace
@@ -208,6 +232,72 @@ Mesh torus(float radius, float tube, int segments) {
     }
     Mesh mesh;
     revolve(mesh, profile, segments);
+    return mesh;
+}
+
+Mesh lathe(const std::vector<glm::vec2>& points, int segments) {
+    const std::vector<glm::vec2> profile = smoothed(points);
+    const std::size_t count = profile.size();
+    // Right of the way up is outside.
+    const auto outward = [&](std::size_t from) {
+        const glm::vec2 way = profile[from + 1] - profile[from];
+        const float length = glm::length(way);
+        return length > 0 ? glm::vec2(way.y, -way.x) / length : glm::vec2(0);
+    };
+    const auto point = [&](std::size_t i, glm::vec2 band_normal, glm::vec2 other_normal) {
+        const glm::vec2 normal =
+            glm::length(band_normal + other_normal) > 1e-3f ? band_normal + other_normal : band_normal;
+        return ProfilePoint{profile[i].x, profile[i].y, normal,
+                            static_cast<float>(i) / static_cast<float>(count - 1)};
+    };
+    std::vector<ProfilePoint> bands;
+    for (std::size_t i = 0; i + 1 < count; ++i) {
+        const glm::vec2 normal = outward(i);
+        if (normal == glm::vec2(0)) continue;
+        bands.push_back(point(i, normal, i > 0 ? outward(i - 1) : glm::vec2(0)));
+        bands.push_back(point(i + 1, normal, i + 2 < count ? outward(i + 1) : glm::vec2(0)));
+    }
+    Mesh mesh;
+    revolve(mesh, bands, segments);
+    return mesh;
+}
+
+Mesh rod(const std::vector<glm::vec3>& points, float first_radius, float last_radius, int segments) {
+    Mesh mesh;
+    const auto count = static_cast<std::uint32_t>(segments);
+    const auto last = static_cast<std::uint32_t>(points.size()) - 1;
+    const auto along = [&](std::uint32_t i) {
+        return glm::normalize(points[std::min(i + 1, last)] - points[i > 0 ? i - 1 : 0]);
+    };
+    const glm::vec3 start = along(0);
+    glm::vec3 side = std::abs(start.y) < 0.9f ? glm::vec3(0, 1, 0) : glm::vec3(1, 0, 0);
+    for (std::uint32_t i = 0; i <= last; ++i) {
+        const glm::vec3 forward = along(i);
+        side = glm::normalize(side
+                              - glm::dot(side, forward) * forward); // turns with the rod without twisting it
+        const glm::vec3 other = glm::cross(forward, side);
+        const float t = static_cast<float>(i) / static_cast<float>(last);
+        for (std::uint32_t k = 0; k < count; ++k) {
+            const float angle = two_pi * static_cast<float>(k) / static_cast<float>(segments);
+            const glm::vec3 normal = std::cos(angle) * side + std::sin(angle) * other;
+            mesh.add({points[i] + glm::mix(first_radius, last_radius, t) * normal,
+                      normal,
+                      {static_cast<float>(k) / static_cast<float>(segments), t}});
+        }
+    }
+    for (std::uint32_t i = 0; i < last; ++i) {
+        for (std::uint32_t k = 0; k < count; ++k) {
+            const std::uint32_t a = i * count + k, b = i * count + (k + 1) % count;
+            mesh.quad(a, b, b + count, a + count);
+        }
+    }
+    std::vector<glm::vec3> begin, end;
+    for (std::uint32_t k = 0; k < count; ++k) {
+        begin.push_back(mesh.vertices[count - 1 - k].position);
+        end.push_back(mesh.vertices[last * count + k].position);
+    }
+    mesh.face(begin);
+    mesh.face(end);
     return mesh;
 }
 

@@ -60,6 +60,11 @@ Mesh cylinder(float radius, float height, int segments);
 Mesh cone(float radius, float height, int segments);
 /// Around the y axis; `tube` is the radius of the ring's own circle.
 Mesh torus(float radius, float tube, int segments);
+/// A curve through pairs (radius, y) from bottom to top, turned around the y axis. A point that stands there twice is
+/// an edge; between two edges without a point in between the way is straight. Closed if it begins and ends at radius 0.
+Mesh lathe(const std::vector<glm::vec2>& points, int segments);
+/// A round bar along these points, none of them twice in a row, growing from one radius to the other; its ends closed.
+Mesh rod(const std::vector<glm::vec3>& points, float first_radius, float last_radius, int segments);
 
 /// One cross-section of a loft, at z: a rounded box (superellipse) or a rounded trapezoid.
 struct Section {

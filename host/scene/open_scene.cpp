@@ -22,6 +22,7 @@ void add_directional(Scene& scene, glm::dvec3 from, glm::vec3 color, double exte
     light.node = scene.nodes.size();
     light.color = color;
     light.casts_shadow = shadow;
+    light.shadow_softness = 2;
     light.shadow_extent = static_cast<float>(extent);
     Node node;
     node.local = look_at_matrix(from, {0, 0, 0}, {0, 1, 0});
@@ -29,23 +30,45 @@ void add_directional(Scene& scene, glm::dvec3 from, glm::vec3 color, double exte
     scene.lights.push_back(light);
 }
 
-/// Where a model is open: the sum of its faces' directions, which is 0 for a closed surface, as a share of its area. A
-/// room without its front wall gives the way out of it.
-glm::dvec3 opening(const Scene& scene) {
-    glm::dvec3 sum(0);
-    double area = 0;
+/// For every triangle of a model: its part, and its normal as long as twice its area.
+template<class Visit>
+void for_each_face(const Scene& scene, Visit visit) {
     for (const Part& part : scene.nodes.front().parts) {
         const Mesh& mesh = *part.mesh;
         for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
             const glm::dvec3 a(mesh.vertices[mesh.indices[i]].position);
             const glm::dvec3 b(mesh.vertices[mesh.indices[i + 1]].position);
             const glm::dvec3 c(mesh.vertices[mesh.indices[i + 2]].position);
-            const glm::dvec3 face = glm::cross(b - a, c - a);
-            sum += face;
-            area += glm::length(face);
+            visit(part, glm::cross(b - a, c - a));
         }
     }
+}
+
+/// Where a model is open: the sum of its faces' directions, which is 0 for a closed surface, as a share of its area. A
+/// room without its front wall gives the way out of it.
+glm::dvec3 opening(const Scene& scene) {
+    glm::dvec3 sum(0);
+    double area = 0;
+    for_each_face(scene, [&](const Part&, glm::dvec3 face) {
+        sum += face;
+        area += glm::length(face);
+    });
     return area > 0 ? sum / area : sum;
+}
+
+/// What the light is set for: about the mean reflectance of wood, leather, skin and painted metal.
+constexpr double usual_reflectance = 0.25;
+
+/// Share of white light that the model's surface reflects, 0..1. Textures count as the usual.
+double reflectance(const Scene& scene) {
+    double sum = 0, area = 0;
+    for_each_face(scene, [&](const Part& part, glm::dvec3 face) {
+        const Material& material = scene.materials[part.material];
+        const double tint = glm::dot(glm::dvec3(material.diffuse), glm::dvec3(0.2126, 0.7152, 0.0722));
+        sum += glm::length(face) * (material.diffuse_texture ? usual_reflectance : 1) * tint;
+        area += glm::length(face);
+    });
+    return area > 0 ? sum / area : usual_reflectance;
 }
 
 /// How far from the middle of the box, towards `from`, a square picture of that field of view holds all of it.
@@ -95,16 +118,19 @@ Scene scene_around_model(const std::filesystem::path& file) {
     scene.camera.near_plane = 0.01 * radius;
     scene.camera.focus_distance = distance;
 
-    const glm::dvec3 key = is_room ? turned(-0.35, 0.35, 1) : turned(-0.6, 0.9, 1);
-    const glm::vec3 key_color = is_room ? glm::vec3(0.8f, 0.76f, 0.7f) : glm::vec3(1.9f, 1.8f, 1.65f);
-    add_directional(scene, key, key_color, 2.4 * radius, true);
-    add_directional(scene, turned(1, 0.3, 0.5), {0.35f, 0.4f, 0.5f}, 0, false);
-    if (!is_room) add_directional(scene, turned(0.5, 0.8, -1), {1.0f, 1.0f, 1.1f}, 0, false);
+    // Less light on what is bright, so that white stays below a display's white; dark things may be dark.
+    const auto exposure =
+        static_cast<float>(usual_reflectance / std::max(reflectance(scene), usual_reflectance));
+    const glm::dvec3 key = is_room ? turned(-0.35, 0.25, 1) : turned(-0.6, 0.9, 1);
+    add_directional(scene, key, exposure * glm::vec3(1.9f, 1.8f, 1.65f), 2.4 * radius, true);
+    add_directional(scene, turned(1, 0.3, 0.5), exposure * glm::vec3(0.35f, 0.4f, 0.5f), 0, false);
+    if (!is_room)
+        add_directional(scene, turned(0.5, 0.8, -1), exposure * glm::vec3(1.0f, 1.0f, 1.1f), 0, false);
     scene.surroundings.zenith = {0.34f, 0.36f, 0.4f};
     scene.surroundings.horizon = {0.16f, 0.165f, 0.17f};
     scene.surroundings.ground = {0.07f, 0.07f, 0.07f};
-    scene.surroundings.ambient_up = {0.28f, 0.29f, 0.31f};
-    scene.surroundings.ambient_down = {0.1f, 0.1f, 0.095f};
+    scene.surroundings.ambient_up = exposure * glm::vec3(0.28f, 0.29f, 0.31f);
+    scene.surroundings.ambient_down = exposure * glm::vec3(0.1f, 0.1f, 0.095f);
     return scene;
 }
 

@@ -86,6 +86,21 @@ MadeParts read_torus(const YamlValue& value, const Context&) {
     return one(torus(radius, tube, segments));
 }
 
+MadeParts read_lathe(const YamlValue& value, const Context&) {
+    const YamlMap map(value, "lathe", {"profile", "segments"});
+    std::vector<glm::vec2> profile;
+    const YamlValue list = map.at("profile");
+    for (const YamlValue& point : list.list()) {
+        profile.emplace_back(point.pair(any_length));
+        if (profile.back().x < 0) point.fail("expected [radius, y] with a radius of at least 0");
+    }
+    if (profile.size() < 2 || profile.size() > 1000)
+        list.fail(fmt::format("expected 2 to 1000 points, found {}", profile.size()));
+    int segments = 48;
+    map.read("segments", segments, {3, 512});
+    return one(lathe(profile, segments));
+}
+
 MadeParts read_faces(const YamlValue& value, const Context&) {
     Mesh mesh;
     for (const YamlValue& face : value.list()) {
@@ -167,6 +182,15 @@ MadeParts read_lamp_posts(const YamlValue& value, const Context& context) {
     return make_lamp_posts(path_of(map, context), read_post_options(map, 7));
 }
 
+void read_colors(const YamlMap& map, std::vector<glm::vec3>& target) {
+    const auto colors = map.find("colors");
+    if (!colors) return;
+    target.clear();
+    for (const YamlValue& color : colors->list())
+        target.push_back(color.color(1e6));
+    if (target.empty()) colors->fail("expected at least one color");
+}
+
 MadeParts read_sparks(const YamlValue& value, const Context& context) {
     const YamlMap map(value, "sparks",
                       {"seed", "count", "center", "radius", "height_range", "size_range", "colors"});
@@ -177,13 +201,31 @@ MadeParts read_sparks(const YamlValue& value, const Context& context) {
     map.read("radius", options.radius, from_zero);
     map.read("height_range", options.height_range, any_length);
     map.read("size_range", options.size_range, positive);
-    if (const auto colors = map.find("colors")) {
-        options.colors.clear();
-        for (const YamlValue& color : colors->list())
-            options.colors.push_back(color.color(1e6));
-        if (options.colors.empty()) colors->fail("expected at least one color");
-    }
+    read_colors(map, options.colors);
     return make_sparks(context.library.terrain ? &*context.library.terrain : nullptr, options);
+}
+
+MadeParts read_twigs(const YamlValue& value, const Context&) {
+    const YamlMap map(value, "twigs", {"seed", "count", "height", "spread", "thickness", "bud_range"});
+    TwigOptions options;
+    map.read("seed", options.seed);
+    map.read("count", options.count, {1, 500});
+    map.read("height", options.height, {0.01, 100});
+    map.read("spread", options.spread, {0, 10});
+    map.read("thickness", options.thickness, positive);
+    map.read("bud_range", options.bud_range, positive);
+    return make_twigs(options);
+}
+
+MadeParts read_light_string(const YamlValue& value, const Context& context) {
+    const YamlMap map(value, "light_string", {"path", "seed", "spacing", "size", "wire", "colors"});
+    LightStringOptions options;
+    map.read("seed", options.seed);
+    map.read("spacing", options.spacing, {0.001, 1e6});
+    map.read("size", options.size, positive);
+    map.read("wire", options.wire, positive);
+    read_colors(map, options.colors);
+    return make_light_string(path_of(map, context), options);
 }
 
 MadeParts read_car(const YamlValue& value, const Context&) {
@@ -198,12 +240,25 @@ struct Maker {
 
 const std::vector<Maker>& makers() {
     static const std::vector<Maker> all = {
-        {"box", read_box},           {"sphere", read_sphere}, {"plane", read_plane},
-        {"cylinder", read_cylinder}, {"cone", read_cone},     {"torus", read_torus},
-        {"faces", read_faces},       {"road", read_road},     {"terrain", read_terrain_mesh},
-        {"tree", read_tree},         {"forest", read_forest}, {"grass", read_grass},
-        {"posts", read_posts},       {"car", read_car},       {"lamp_posts", read_lamp_posts},
+        {"box", read_box},
+        {"sphere", read_sphere},
+        {"plane", read_plane},
+        {"cylinder", read_cylinder},
+        {"cone", read_cone},
+        {"torus", read_torus},
+        {"faces", read_faces},
+        {"road", read_road},
+        {"terrain", read_terrain_mesh},
+        {"tree", read_tree},
+        {"forest", read_forest},
+        {"grass", read_grass},
+        {"posts", read_posts},
+        {"car", read_car},
+        {"lamp_posts", read_lamp_posts},
         {"sparks", read_sparks},
+        {"lathe", read_lathe},
+        {"twigs", read_twigs},
+        {"light_string", read_light_string},
     };
     return all;
 }

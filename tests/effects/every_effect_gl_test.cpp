@@ -1,6 +1,8 @@
 // What every effect of the catalog must survive, whatever it does: hostile pixels, depths, normals, sizes, values and
-// times. An effect gets these checks by existing; none is named here. POSTFX_LONG=1 draws more random values.
+// times, and the shipped scenes. An effect, a level, a choice gets these checks by existing; none is named here.
+// POSTFX_LONG=1 draws more random values and tries every level on every depth and attachment.
 #include "hard_inputs.hpp"
+#include "scene_inputs.hpp"
 
 #include <catch2/catch.hpp>
 #include <fmt/format.h>
@@ -18,9 +20,26 @@ namespace {
 constexpr std::uint32_t random_seed = 20240607;
 constexpr double one_week = 7 * 24 * 3600.0; // seconds
 
-int random_sets() {
+constexpr Size scene_size{96, 54}; // a circle or glow of a few per cent of the height has some pixels
+
+bool is_long() {
     const char* longer = std::getenv("POSTFX_LONG");
-    return longer && *longer == '1' ? 200 : 40;
+    return longer && *longer == '1';
+}
+
+int random_sets() {
+    return is_long() ? 200 : 40;
+}
+
+/// The shipped scenes, drawn once.
+const std::vector<Named<Input>>& scenes() {
+    static const std::vector<Named<Input>> drawn = [] {
+        std::vector<Named<Input>> inputs;
+        for (const std::string& name : RenderedScene::names())
+            inputs.push_back({name, RenderedScene(name).input(scene_size)});
+        return inputs;
+    }();
+    return drawn;
 }
 
 bool same_bits_in_all_channels(const Image& a, const Image& b) {
@@ -93,6 +112,34 @@ public:
     }
     ChainEntry entry() const { return entry(effect_->default_level); }
 
+    /// The levels that one case of a large sweep is tried at: all in long runs, otherwise the default and another one,
+    /// which takes turns, so that a sweep costs the same however many levels there are.
+    std::vector<int> sweep_levels() {
+        std::vector<int> tried;
+        turn_ = (turn_ + 1) % levels();
+        for (int level = 0; level < levels(); ++level) {
+            if (is_long() || level == effect_->default_level || level == turn_) tried.push_back(level);
+        }
+        return tried;
+    }
+
+    /// That level with its defaults, then with every other word of every choice and every other toggle.
+    std::vector<Named<ChainEntry>> variants(int level) const {
+        std::vector<Named<ChainEntry>> found{{"defaults", entry(level)}};
+        for (const ParameterInfo& parameter : effect_->parameters) {
+            const bool is_toggle = parameter.kind == ParameterKind::toggle;
+            if (!is_toggle && parameter.kind != ParameterKind::choice) continue;
+            const int words = is_toggle ? 2 : static_cast<int>(parameter.choices.size());
+            for (int word = 0; word < words; ++word) {
+                if (word == static_cast<int>(parameter.default_value[0])) continue;
+                ChainEntry changed = entry(level);
+                changed.set(parameter.id, word);
+                found.push_back({fmt::format("{} = {}", parameter.id, word), std::move(changed)});
+            }
+        }
+        return found;
+    }
+
     /// Draw, draw something else over it, draw again: same bits, so that nothing is left unwritten, and no pixel of
     /// finite light lost.
     void check(const std::string& what, const ChainEntry& entry, const Input& input,
@@ -161,6 +208,7 @@ private:
     }
 
     EffectPtr effect_;
+    int turn_ = -1; ///< whose turn it is in sweep_levels
     Planner planner_;
     Runner runner_;
 };
@@ -192,7 +240,7 @@ void try_half_precision(Trial& trial) {
 /// `name` holds the value at one pixel, then everywhere.
 void try_attachment(Trial& trial, const Input& ordinary, const std::string& name, float value,
                     const std::string& what) {
-    for (int level = 0; level < trial.levels(); ++level) {
+    for (int level : trial.sweep_levels()) {
         Input input = ordinary;
         put_spot(input.attachments.at(name), value);
         trial.check(fmt::format("{} with a pixel of {}", what, value), trial.entry(level), input);
@@ -237,14 +285,39 @@ void try_sizes(Trial& trial) {
 }
 
 void try_times(Trial& trial) {
-    for (int level = 0; level < trial.levels(); ++level) {
-        for (double time : {0.0, one_week}) {
-            for (std::uint32_t frame : {0u, 1u << 31, ~0u}) {
-                Input input = trial.input();
-                input.time = time;
-                input.frame = frame;
+    for (double time : {0.0, one_week}) {
+        for (std::uint32_t frame : {0u, 1u << 31, ~0u}) {
+            Input input = trial.input();
+            input.time = time;
+            input.frame = frame;
+            for (int level : trial.sweep_levels()) {
                 trial.check(fmt::format("time {} s, frame {}", time, frame), trial.entry(level), input);
             }
+        }
+    }
+}
+
+/// Every level with every word of its choices, on ordinary, broken and the brightest light.
+void try_choices(Trial& trial) {
+    const Input ordinary = trial.input();
+    Input brightest = ordinary;
+    fill(brightest.color, largest_half);
+    Input broken = ordinary;
+    put_non_finite(broken.color);
+    for (int level = 0; level < trial.levels(); ++level) {
+        for (const auto& [what, entry] : trial.variants(level)) {
+            trial.check(what, entry, ordinary);
+            trial.check(what + ", non-finite pixels", entry, broken);
+            trial.check(what + ", all pixels 65504, rgba16f", entry, brightest, Format::rgba16f);
+        }
+    }
+}
+
+void try_scenes(Trial& trial) {
+    for (const auto& [name, input] : scenes()) {
+        for (int level = 0; level < trial.levels(); ++level) {
+            for (const auto& [what, entry] : trial.variants(level))
+                trial.check(name + ", " + what, entry, input, Format::rgba16f);
         }
     }
 }
@@ -301,12 +374,16 @@ void try_random_values(Trial& trial) {
     std::mt19937 random(random_seed);
     const std::vector<Named<Camera>> cameras = hard_cameras();
     for (int set = 0; set < random_sets(); ++set) {
-        ChainEntry entry = trial.entry(static_cast<int>(random() % static_cast<unsigned>(trial.levels())));
+        ChainEntry entry = trial.entry(set % trial.levels());
         std::string what = fmt::format("random set {}:", set);
-        for (const ParameterInfo& parameter : trial.effect().parameters) {
-            const double value = random_value(parameter, random);
-            entry.set(parameter.id, value);
-            what += fmt::format(" {}={}", parameter.id, value);
+        for (std::size_t i = 0; i < trial.effect().parameters.size(); ++i) {
+            const ParameterInfo& parameter = trial.effect().parameters[i];
+            entry.set(parameter.id, random_value(parameter, random)); // rounds what counts in steps
+            for (int c = 1; c < parameter.components(); ++c)
+                entry.values[i][static_cast<std::size_t>(c)] = random_value(parameter, random);
+            what += fmt::format(
+                " {}={:.9g}", parameter.id,
+                fmt::join(entry.values[i].begin(), entry.values[i].begin() + parameter.components(), ","));
         }
         const auto& [camera_name, camera] = cameras[random() % cameras.size()];
         const Size size = set % 4 == 0 ? hard_sizes[random() % std::size(hard_sizes)] : usual_size;
@@ -336,12 +413,14 @@ void try_identities(Trial& trial) {
 
 TEST_CASE("every effect of the catalog survives the hard cases") {
     REQUIRE(!catalog().effects().empty());
-    fmt::print("{} random sets per effect, seed {}\n", random_sets(), random_seed);
+    fmt::print("{} random sets per effect, seed {}; {} scenes\n", random_sets(), random_seed,
+               scenes().size());
     Tally all;
     for (const EffectPtr& effect : catalog().effects()) {
         Trial trial(effect);
-        for (auto* attempt : {try_defaults, try_colors, try_half_precision, try_geometry, try_attachments,
-                              try_sizes, try_times, try_extremes, try_random_values, try_identities}) {
+        for (auto* attempt :
+             {try_defaults, try_colors, try_half_precision, try_geometry, try_attachments, try_sizes,
+              try_times, try_choices, try_scenes, try_extremes, try_random_values, try_identities}) {
             attempt(trial);
         }
         trial.tally.print(effect->id);

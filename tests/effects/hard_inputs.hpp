@@ -32,7 +32,8 @@ struct Size {
 /// Small enough for thousands of runs, odd, and high enough that sizes given as a few per cent of the height are more
 /// than a pixel, since below that effects may rightly do nothing.
 inline constexpr Size usual_size{71, 53};
-inline constexpr Size hard_sizes[] = {{1, 1}, {1, 7}, {7, 1}, {2, 2}, {17, 31}, {800, 2}};
+inline constexpr Size hard_sizes[] = {{1, 1},   {1, 7},   {7, 1},   {2, 2},
+                                      {17, 31}, {800, 2}, {2, 800}, {8000, 2}};
 
 inline std::string text_of(Size size) {
     return std::to_string(size.width) + "x" + std::to_string(size.height);

@@ -45,7 +45,7 @@ Image picture_of(const std::string& scene_name, const std::string& chain_name, i
 
 TEST_CASE("the scenes look as they did") {
     REQUIRE(has_gl());
-    const std::string scene = GENERATE("night_drive", "cornell", "cornell_glow");
+    const std::string scene = GENERATE("night_drive", "cornell", "cornell_glow", "still_life");
     // Another rasteriser covers edge pixels differently, and rounds rgba16f differently by a code or two elsewhere: 3
     // codes are allowed anywhere, more in 2 % of the pixels. One lamp, tree or effect less moves more than that.
     CHECK_NOTHROW(check_golden(source + "/tests/scene", scene, picture_of(scene, "cinematic", 320, 180), 3,

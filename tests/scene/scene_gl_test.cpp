@@ -6,6 +6,7 @@
 #include <gl/objects.hpp>
 #include <postfx/error.hpp>
 #include <scene/renderer.hpp>
+#include <temporary_directory.hpp>
 #include <testing.hpp>
 
 #include <glm/glm.hpp>
@@ -13,6 +14,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
+#include <fstream>
 #include <iostream>
 #include <string>
 
@@ -313,6 +315,35 @@ TEST_CASE("models of other people draw with their textures") {
         CHECK(covered > size * size / 6); // fills a good part of the picture
         CHECK(covered < size * size * 9 / 10);
         CHECK(dark < covered / 100);
+    }
+    check_quiet();
+}
+
+TEST_CASE("a bare model is neither burnt out nor dark, whatever it reflects") {
+    const postfx::testing::TemporaryDirectory folder;
+    // A room without its front wall, and the same walls closed: seen from inside or outside as their fronts say.
+    const std::string corners =
+        "v -1 -1 -1\nv 1 -1 -1\nv 1 1 -1\nv -1 1 -1\nv -1 -1 1\nv 1 -1 1\nv 1 1 1\nv -1 1 1\n";
+    const std::string room = "f 1 2 3 4\nf 1 5 6 2\nf 4 3 7 8\nf 1 4 8 5\nf 2 6 7 3\n";
+    const std::string block = "f 4 3 2 1\nf 5 6 7 8\nf 2 6 5 1\nf 8 7 3 4\nf 5 8 4 1\nf 3 7 6 2\n";
+    for (const std::string& faces : {room, block}) {
+        for (const char* white : {"1 1 1", "0.73 0.73 0.73", "0.25 0.25 0.25"}) {
+            INFO((faces == room ? "room" : "block") << " of " << white);
+            std::ofstream(folder / "m.mtl") << "newmtl white\nKd " << white << "\nKs 0 0 0\n";
+            std::ofstream(folder / "m.obj") << "mtllib m.mtl\n" << corners << "usemtl white\n" << faces;
+            SceneRenderer scene(open_scene((folder / "m.obj").string(), ""));
+            const SceneFrame frame = scene.render(size, size, 0, {});
+            const Image color = read(frame, "color"), depth = read(frame, "depth");
+            float brightest = 0;
+            for (int y = 0; y < size; ++y) {
+                for (int x = 0; x < size; ++x) {
+                    if (depth.at(x, y, 0) != 0) brightest = std::max(brightest, color.at(x, y, 1));
+                }
+            }
+            // Below the display's white; above mid-grey (0.18), as the lit side of anything but black should be.
+            CHECK(brightest < 1);
+            CHECK(brightest > 0.3f);
+        }
     }
     check_quiet();
 }

@@ -99,7 +99,8 @@ TEST_CASE("a mistake in a scene file is one message with its place") {
         {"nodes:\n  - mesh: {bocks: {}}",
          "s.yaml:2:12: unknown word \"bocks\", expected one of model, box, sphere, plane, cylinder, cone, "
          "torus, faces, "
-         "road, terrain, tree, forest, grass, posts, car, lamp_posts, sparks"},
+         "road, terrain, tree, forest, grass, posts, car, lamp_posts, sparks, lathe, twigs, "
+         "light_string"},
         {"nodes:\n  - mesh: {box: {size: [1, 2]}}", "s.yaml:2:24: expected [x, y, z], found a list"},
         {"nodes:\n  - mesh: {box: {size: [1, 2, -1]}}",
          "s.yaml:2:31: -1 is out of range, expected 1e-06 to 1000000"},
@@ -160,6 +161,9 @@ TEST_CASE("closed primitives have unit normals, no hole and their measure") {
         {"cylinder", cylinder(1, 2, 96), 6 * pi, 2 * pi},
         {"cone", cone(1, 2, 96), pi * (1 + std::sqrt(5.0)), 2 * pi / 3},
         {"torus", torus(2, 0.5f, 96), 4 * pi * pi, pi * pi},
+        {"lathe", lathe({{0, 0}, {1, 0}, {1, 0}, {1, 2}, {1, 2}, {0, 3}}, 96), pi * (5 + std::sqrt(2.0)),
+         7 * pi / 3},
+        {"rod", rod({{0, 0, 0}, {0, 1, 0}, {0, 2, 0}}, 1, 1, 96), 6 * pi, 2 * pi},
     };
     for (const Row& row : rows) {
         INFO(row.name);
@@ -177,8 +181,9 @@ TEST_CASE("closed primitives have unit normals, no hole and their measure") {
 }
 
 TEST_CASE("a normal points to the front of its triangle") {
-    for (const Mesh& mesh :
-         {box({1, 1, 1}), sphere(1, 24), cylinder(1, 1, 24), torus(1, 0.3f, 24), plane({1, 1}, 2)}) {
+    for (const Mesh& mesh : {box({1, 1, 1}), sphere(1, 24), cylinder(1, 1, 24), torus(1, 0.3f, 24),
+                             plane({1, 1}, 2), lathe({{0, -1}, {1, 0}, {0.4f, 1}, {0, 1}}, 24),
+                             rod({{0, 0, 0}, {0.3f, 1, 0}, {0, 2, 0.5f}}, 0.3f, 0.1f, 24)}) {
         std::size_t wrong = 0;
         for (std::size_t i = 0; i < mesh.indices.size(); i += 3) {
             const Vertex &a = mesh.vertices[mesh.indices[i]], &b = mesh.vertices[mesh.indices[i + 1]],
@@ -212,6 +217,8 @@ TEST_CASE("generators are sane and the same every time") {
         made.push_back(make_lamp_posts(path, {}));
         made.push_back(make_sparks(&terrain, {}));
         made.push_back(make_car());
+        made.push_back(make_twigs({}));
+        made.push_back(make_light_string(path, {.spacing = 5}));
         return made;
     };
     const auto first = all(), second = all();
@@ -302,7 +309,7 @@ TEST_CASE("an including file replaces what has the same name") {
 
 TEST_CASE("every shipped scene opens and says what it is") {
     const auto entries = list_scenes(scenes);
-    REQUIRE(entries.size() >= 3);
+    REQUIRE(entries.size() >= 4);
     for (const SceneEntry& entry : entries) {
         INFO(entry.name);
         const Scene scene = open_scene(entry.name, scenes);
