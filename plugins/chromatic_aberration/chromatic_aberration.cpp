@@ -1,4 +1,4 @@
-// Lateral chromatic aberration: a lens magnifies red and blue differently.
+// Lateral chromatic aberration: a lens magnifies red and blue differently. README.md has the model and its limits.
 #include <postfx/plugin.hpp>
 
 #include <algorithm>
@@ -12,6 +12,26 @@ constexpr postfx::Parameter parameters[] = {
         .in_unit("height")
         .about("Distance of the red from the blue image in the corner; negative: blue outside"),
 };
+constexpr const char* attachments[] = {"depth"};
+
+enum LevelIndex { classic, low, medium, high, ultra, reference };
+constexpr postfx_level levels[] = {
+    postfx::level("classic", "three images of different size, by how far a pixel is out of focus"),
+    postfx::level("low",
+                  "three images of different size: ghosts instead of fringes where they lie far apart"),
+    postfx::level("medium", "samples of the spectrum at most 1.5 pixels apart, up to 2 x 12"),
+    postfx::level("high", "samples at most 0.75 pixels apart, up to 2 x 48"),
+    postfx::level("ultra", "as high, each sample by 4x4 pixels (Catmull-Rom) without ringing"),
+    postfx::level("reference", "at most 0.25 pixels apart, up to 2 x 256, each by 6x6 pixels; slow"),
+};
+
+/// How an integral over wavelengths is sampled, by level from medium on.
+struct Sampling {
+    double spacing; ///< largest distance of two samples, pixels
+    int most;       ///< samples on either side of green; beyond, the spacing grows
+    int radius; ///< of the kernel that rebuilds the picture between pixels; 1: the sampler's linear filter
+};
+constexpr Sampling samplings[] = {{1.5, 12, 1}, {0.75, 48, 1}, {0.75, 48, 2}, {0.25, 256, 3}};
 
 // Wavelengths in micrometres at which the three channels are most sensitive.
 constexpr double red_peak = 0.612, green_peak = 0.549, blue_peak = 0.464;
@@ -21,32 +41,71 @@ constexpr double red_peak = 0.612, green_peak = 0.549, blue_peak = 0.464;
 constexpr double dispersion(double wavelength) {
     return 1 / (wavelength * wavelength);
 }
+constexpr double spread = dispersion(blue_peak) - dispersion(red_peak);
+constexpr double red_end = (dispersion(red_peak) - dispersion(green_peak)) / spread;
+constexpr double blue_end = (dispersion(blue_peak) - dispersion(green_peak)) / spread;
 
-/// Samples between green and the far end of that many pixels: at most 1.5 pixels apart, until there are 12.
-int taps(double pixels) {
-    return static_cast<int>(std::clamp(std::ceil(std::abs(pixels) / 1.5), 1.0, 12.0));
+/// Samples between green and the far end of that many pixels.
+int taps(double pixels, const Sampling& sampling) {
+    return static_cast<int>(
+        std::clamp(std::ceil(std::abs(pixels) / sampling.spacing), 1.0, double(sampling.most)));
+}
+
+void declare_classic(const postfx::Request& in, postfx::Builder& out, double share) {
+    if (!in.has("depth") || in.camera().focus_distance <= 0) {
+        out.compose("chromatic_aberration_ghosts.glsl")
+            .reads("picture", out.color(), "linear")
+            .value("red", share * red_end)
+            .value("blue", share * blue_end);
+        return;
+    }
+    out.compose("chromatic_aberration_classic.glsl")
+        .reads("picture", out.color(), "linear")
+        .reads("depth", out.attachment("depth"), "nearest")
+        .value("red", share * red_end)
+        .value("blue", share * blue_end)
+        .value("inverse_focus_distance", 1 / in.camera().focus_distance);
+}
+
+void declare_spectrum(const postfx::Request& in, postfx::Builder& out, double share) {
+    const Sampling& sampling = samplings[in.level() - medium];
+    const double pixels = in.number("strength") * in.height();
+    const bool linear = sampling.radius == 1;
+    out.compose(linear ? "chromatic_aberration.glsl" : "chromatic_aberration_cubic.glsl")
+        .reads("picture", out.color(), linear ? "linear" : "nearest")
+        .value("red", share * red_end)
+        .value("blue", share * blue_end)
+        .constant("CHROMATIC_ABERRATION_RED_TAPS", taps(pixels * red_end, sampling))
+        .constant("CHROMATIC_ABERRATION_BLUE_TAPS", taps(pixels * blue_end, sampling))
+        .constant("CHROMATIC_ABERRATION_RADIUS", sampling.radius);
 }
 
 void plan(const postfx::Request& in, postfx::Builder& out) {
-    const double strength = in.number("strength");
-    if (strength == 0) return out.identity("strength is 0");
-    const double spread = dispersion(blue_peak) - dispersion(red_peak);
-    const double red = strength * (dispersion(red_peak) - dispersion(green_peak)) / spread;
-    const double blue = strength * (dispersion(blue_peak) - dispersion(green_peak)) / spread;
+    if (in.number("strength") == 0) return out.identity("strength is 0");
     // From heights in the corner to a share of the radius. The corner is at least half a height away, so no
-    // share exceeds 0.1 and the picture can't be turned inside out.
+    // share exceeds 0.1 and the picture can't be turned inside out: the range of `strength` sees to that.
     const double corner = 0.5 * std::hypot(1.0, double(in.width()) / in.height());
-    out.compose("chromatic_aberration.glsl")
-        .reads("picture", out.color(), "linear")
-        .value("red", red / corner)
-        .value("blue", blue / corner)
-        .constant("CHROMATIC_ABERRATION_RED_TAPS", taps(red * in.height()))
-        .constant("CHROMATIC_ABERRATION_BLUE_TAPS", taps(blue * in.height()));
+    const double share = in.number("strength") / corner;
+    switch (in.level()) {
+    case classic:
+        return declare_classic(in, out, share);
+    case low:
+        // A kernel that rises towards its end has its mean at 2/3.
+        out.compose("chromatic_aberration_ghosts.glsl")
+            .reads("picture", out.color(), "linear")
+            .value("red", share * red_end * 2 / 3)
+            .value("blue", share * blue_end * 2 / 3);
+        return;
+    default:
+        return declare_spectrum(in, out, share);
+    }
 }
 
 constexpr auto chromatic_aberration = postfx::effect<plan>("chromatic_aberration")
                                           .about("Colour fringes that grow towards the corners")
-                                          .with_parameters(parameters);
+                                          .with_parameters(parameters)
+                                          .reading(attachments)
+                                          .with_levels(levels, medium);
 
 } // namespace
 

@@ -1,5 +1,5 @@
-// The grain's model in float64. The hash is part of the model (Jarzynski and Olano 2020, "pcg3d") and is
-// written down here a second time.
+// The grain's model in float64. The hash is part of the model (C. Wellons 2018, "lowbias32", with a key
+// between its two rounds) and is written down here a second time.
 #include <testing.hpp>
 
 #include <algorithm>
@@ -11,74 +11,183 @@ namespace postfx::testing {
 namespace {
 
 using Triple = std::array<double, 3>;
+enum Level { classic, low, medium, high, boolean };
 
-Triple random_at(int x, int y, const ReferenceInput& input) {
-    const std::uint32_t grain_stream = 0x6a11e;
-    std::uint32_t v[3] = {static_cast<std::uint32_t>(x + 65536 * y), input.frame,
-                          input.seed * 2654435769u + grain_stream};
-    for (std::uint32_t& word : v)
-        word = word * 1664525u + 1013904223u;
-    for (int round = 0; round < 2; ++round) {
-        for (int i = 0; i < 3; ++i)
-            v[i] += v[(i + 1) % 3] * v[(i + 2) % 3];
-        if (round == 0) {
-            for (std::uint32_t& word : v)
-                word ^= word >> 16;
-        }
-    }
+const double pi = std::acos(-1.0);
+
+std::uint32_t folded(std::uint32_t word, int bits) {
+    return word ^ (word >> bits);
+}
+
+std::uint32_t keyed(std::uint32_t word, std::uint32_t before, std::uint32_t between) {
+    word = folded(word + before, 16) * 2146121005u;
+    return folded((folded(word, 15) + between) * 2221713035u, 16);
+}
+
+std::uint32_t mixed(std::uint32_t word) {
+    return keyed(word, 0, 0);
+}
+
+std::uint32_t key_of(const ReferenceInput& input) {
+    const auto own_seed = static_cast<std::uint32_t>(input.value("seed"));
+    return mixed(input.frame * 2654435769u + input.seed * 2246822507u + own_seed * 3266489909u);
+}
+
+std::uint32_t word_at(int x, int y, std::uint32_t key) {
+    const std::uint32_t place = static_cast<std::uint32_t>(x) + 65536u * static_cast<std::uint32_t>(y);
+    return keyed(place * 2654435769u, key, key);
+}
+
+/// Three numbers of 10 bits; mean 0, variance 1.
+Triple numbers(std::uint32_t word) {
     Triple result;
-    for (int i = 0; i < 3; ++i)
-        result[i] = std::sqrt(12.0) * ((v[i] >> 8) / 16777216.0 - 0.5);
+    const std::uint32_t parts[] = {word % 1024, word / 1024 % 1024, word / (1u << 22)};
+    for (std::size_t c = 0; c < 3; ++c)
+        result[c] = std::sqrt(12.0) * ((parts[c] + 0.5) / 1024 - 0.5);
     return result;
+}
+
+/// A weighted sum whose weights are scaled to a root sum of squares of 1.
+class Sum {
+public:
+    void add(const Triple& value, double weight) {
+        for (std::size_t c = 0; c < 3; ++c)
+            sum_[c] += weight * value[c];
+        squares_ += weight * weight;
+    }
+    Triple normalised() const {
+        const double scale = std::sqrt(squares_);
+        return {sum_[0] / scale, sum_[1] / scale, sum_[2] / scale};
+    }
+
+private:
+    Triple sum_{};
+    double squares_ = 0;
+};
+
+/// The first of `count` words is the pixel's.
+Triple pixel_field(int x, int y, std::uint32_t key, int count) {
+    Sum sum;
+    std::uint32_t word = word_at(x, y, key);
+    for (int i = 0; i < count; ++i, word = mixed(word + 2654435769u))
+        sum.add(numbers(word), 1);
+    return sum.normalised();
 }
 
 /// Corner (i, j) of the triangular lattice with edges of length `edge` stands at i * a + j * b, where a and b
 /// are the edges that lie symmetrically about the diagonal.
-Triple clumps_at(double x, double y, double edge, const ReferenceInput& input) {
-    const double pi = std::acos(-1.0);
+Triple triangular_field(double x, double y, double edge, std::uint32_t key) {
     const double ax = edge * std::cos(pi / 12), ay = -edge * std::sin(pi / 12);
     const double bx = -edge * std::sin(pi / 12), by = edge * std::cos(pi / 12);
     const double reach = edge * std::sqrt(3.0) / 2; // height of a triangle
     const double determinant = ax * by - ay * bx;
     const auto i0 = static_cast<int>(std::floor((x * by - y * bx) / determinant));
     const auto j0 = static_cast<int>(std::floor((y * ax - x * ay) / determinant));
-    Triple sum{};
-    double squares = 0;
+    Sum sum;
     for (int j = j0 - 1; j <= j0 + 2; ++j) {
         for (int i = i0 - 1; i <= i0 + 2; ++i) {
             const double dx = x - (i * ax + j * bx), dy = y - (i * ay + j * by);
             const double inside = 1 - (dx * dx + dy * dy) / (reach * reach);
-            if (inside <= 0) continue;
-            const double weight = inside * inside;
-            const Triple value = random_at(i, j, input);
-            for (int c = 0; c < 3; ++c)
-                sum[c] += weight * value[c];
-            squares += weight * weight;
+            if (inside > 0) sum.add(numbers(word_at(i, j, key)), inside * inside);
         }
     }
-    for (double& value : sum)
-        value /= std::sqrt(squares);
-    return sum;
+    return sum.normalised();
+}
+
+/// Points of a square lattice, those within 2 edges.
+Triple square_field(double x, double y, double edge, std::uint32_t key) {
+    const auto i0 = static_cast<int>(std::floor(x / edge)), j0 = static_cast<int>(std::floor(y / edge));
+    Sum sum;
+    for (int j = j0 - 2; j <= j0 + 3; ++j) {
+        for (int i = i0 - 2; i <= i0 + 3; ++i) {
+            const double inside = 1 - std::pow(std::hypot(x / edge - i, y / edge - j) / 2, 2);
+            if (inside > 0) sum.add(numbers(word_at(i + 1, j + 1, key)), inside * inside);
+        }
+    }
+    return sum.normalised();
+}
+
+/// How many of a Poisson process's points a uniform number stands for.
+int poisson(double number, double mean) {
+    int count = 0;
+    for (double share = std::exp(-mean); number >= share && count < 40; share *= mean / ++count)
+        number -= share;
+    return count;
+}
+
+/// Is a place covered by discs of diameter 1 at random? Places and cells of area 1.
+bool is_covered(double x, double y, double mean, std::uint32_t key) {
+    for (int j = static_cast<int>(std::floor(y)) - 1; j <= std::floor(y) + 1; ++j) {
+        for (int i = static_cast<int>(std::floor(x)) - 1; i <= std::floor(x) + 1; ++i) {
+            std::uint32_t word = word_at(i + 1, j + 1, key);
+            const int count = poisson((word >> 8) / 16777216.0, mean);
+            for (int disc = 0; disc < count; ++disc) {
+                word = mixed(word + 2654435769u);
+                const double dx = i + (word % 65536 + 0.5) / 65536 - x;
+                const double dy = j + ((word >> 16) + 0.5) / 65536 - y;
+                if (std::hypot(dx, dy) < 0.5) return true;
+            }
+        }
+    }
+    return false;
+}
+
+double boolean_field(double x, double y, double light, std::uint32_t key) {
+    const double covered = std::clamp(light, 0.001, 0.999);
+    const double mean = -std::log1p(-covered) / (pi / 4);
+    const int layers = 32;
+    int count = 0;
+    for (int layer = 0; layer < layers; ++layer) {
+        key = mixed(key + 2654435769u);
+        count += is_covered(x, y, mean, key);
+    }
+    return (count - layers * covered) / std::sqrt(layers * covered * (1 - covered));
+}
+
+Triple field_at(const ReferenceInput& input, int level, int x, int y) {
+    const double size = input.value("size") * input.color.height, px = x + 0.5, py = y + 0.5;
+    const std::uint32_t key = key_of(input);
+    if (level == low || size <= 1) return pixel_field(x, y, key, level >= high ? 4 : 1);
+    if (level == medium) return triangular_field(px, py, size, key);
+    if (level == high) return square_field(px, py, 0.45 * size, key);
+    Triple result;
+    for (std::uint32_t c = 0; c < 3; ++c) {
+        result[c] = boolean_field(px / (1.75 * size), py / (1.75 * size),
+                                  input.color.at(x, y, static_cast<int>(c)), mixed(key + c + 1));
+    }
+    return result;
+}
+
+/// With a focus that is not known.
+double sine_noise(const ReferenceInput& input, int x, int y) {
+    const double u = (x + 0.5) / input.color.width + input.time,
+                 v = (y + 0.5) / input.color.height + input.time;
+    const double wave = std::sin(u * 12.9898 + v * 78.233) * 43758.5453;
+    return input.value("amount") * std::sqrt(3.0) * (wave - std::floor(wave) - 0.5);
 }
 
 } // namespace
 
 Image64 reference(const ReferenceInput& input) {
     const int width = input.color.width, height = input.color.height;
-    const double size = input.value("size") * height;
-    const double amount = input.value("amount") * (size < 1 ? size : 1);
+    const int level = static_cast<int>(input.value("quality"));
+    const double amount = input.value("amount") * std::min(input.value("size") * height, 1.0);
     const double own = std::sqrt(input.value("color"));
     const double joint = (std::sqrt(3 - 2 * input.value("color")) - own) / 3;
     Image64 result(width, height, 3);
     for (int y = 0; y < height; ++y) {
         for (int x = 0; x < width; ++x) {
-            const Triple field = size > 1 ? clumps_at(x + 0.5, y + 0.5, size, input) : random_at(x, y, input);
+            const Triple field = level == classic ? Triple{} : field_at(input, level, x, y);
             const double all = field[0] + field[1] + field[2];
             for (int c = 0; c < 3; ++c) {
                 const double u = input.color.at(x, y, c);
+                if (level == classic) {
+                    result.at(x, y, c) = u + sine_noise(input, x, y);
+                    continue;
+                }
                 const double room = std::max(0.0, std::min(u, 1 - u));
-                const double noise =
-                    amount * std::sqrt(std::max(0.0, u * (1 - u))) * (own * field[c] + joint * all);
+                const double noise = amount * std::sqrt(std::max(0.0, u * (1 - u)))
+                                     * (own * field[static_cast<std::size_t>(c)] + joint * all);
                 result.at(x, y, c) = u + std::clamp(noise, -room, room);
             }
         }

@@ -1,5 +1,4 @@
 #include <postfx/color.glsl>
-#include <postfx/numeric.glsl>
 
 // Every operator has long reached white here, and its square is far from float's limit.
 const float TONEMAP_BRIGHTEST = 65504.0;
@@ -8,12 +7,12 @@ const float TONEMAP_BRIGHTEST = 65504.0;
 // the exposure that puts grey 0.18 near 0.21. The fit's constant -0.000090537 is left out: it would make everything
 // below 0.002 black, and T(0) = 0 only by clipping; the curve moves by less than 4e-4.
 vec3 tonemap_aces(vec3 light) {
-    // sRGB to ACES AP1 and the reference rendering's desaturation; columns.
-    const mat3 to_film = mat3(0.59719, 0.07600, 0.02840, 0.35458, 0.90834, 0.13383, 0.04823, 0.01566, 0.83777);
+    // sRGB to ACES AP1 and the reference rendering's desaturation, columns; and middle grey's exposure.
+    const mat3 to_film =
+        mat3(0.59719, 0.07600, 0.02840, 0.35458, 0.90834, 0.13383, 0.04823, 0.01566, 0.83777) * (1.0 / 0.6);
     const mat3 to_display =
         mat3(1.60475, -0.10208, -0.00327, -0.53108, 1.10813, -0.07276, -0.07367, -0.00605, 1.07602);
-    const float middle_grey_exposure = 1.0 / 0.6;
-    vec3 film = to_film * (light * middle_grey_exposure);
+    vec3 film = to_film * light;
     film = film * (film + 0.0245786) / (film * (0.983729 * film + 0.4329510) + 0.238081);
     return to_display * film;
 }
@@ -39,9 +38,15 @@ vec3 tonemap_hable(vec3 light) {
     return tonemap_hable_curve(2.0 * light) / tonemap_hable_curve(vec3(11.2));
 }
 
+// No display shows negative light, and what is not a number is black. As integers, both lie above all that is not
+// negative: one comparison finds them, without trusting comparisons with NaN.
+float tonemap_light(float x) {
+    return floatBitsToUint(x) > 0x7f800000u ? 0.0 : min(x, TONEMAP_BRIGHTEST);
+}
+
 vec3 tonemap(vec3 color, Pixel pixel, TonemapParams params) {
-    // No display shows negative light; what is not a number is black.
-    vec3 light = clamp(postfx_finite_or(color * params.gain, TONEMAP_BRIGHTEST), 0.0, TONEMAP_BRIGHTEST);
+    vec3 exposed = color * params.gain;
+    vec3 light = vec3(tonemap_light(exposed.r), tonemap_light(exposed.g), tonemap_light(exposed.b));
     vec3 mapped = TONEMAP_OPERATOR == 0   ? tonemap_aces(light)
                   : TONEMAP_OPERATOR == 1 ? tonemap_reinhard(light, params.white)
                   : TONEMAP_OPERATOR == 2 ? tonemap_hable(light)

@@ -16,14 +16,17 @@ constexpr double ulp = 0x1p-23; // of 1
 constexpr float infinity = std::numeric_limits<float>::infinity();
 const Values natural = {{"model", 0}, {"strength", 1}};
 const Values artistic = {{"model", 1}, {"strength", 1}};
+const Values classic = {{"quality", 0}, {"model", 1}, {"strength", 1}};
 
 Image gains(int width, int height, const Values& values) {
     return run_effect("vignette", {.color = constant(width, height, {1, 1, 1})}, values);
 }
 
 /// Largest rounding error of the gain. Natural: 4 ulp, of which the reciprocal may take 2.5. Artistic: the
-/// same for the radius, which the cubic's steepest slope of 1.5 / softness then enlarges.
+/// same for the radius, which the cubic's steepest slope of 1.5 / softness then enlarges. Classic: pow may be
+/// 16 ulp off, of at most 0.61.
 double gain_tolerance(const Values& values) {
+    if (values.contains("quality")) return 16 * ulp;
     const auto softness = values.find("softness");
     return values.at("model") == 0
                ? 4 * ulp
@@ -37,6 +40,8 @@ TEST_CASE("the picture is the float64 reference's") {
                             natural,
                             {{"model", 1}},
                             artistic,
+                            classic,
+                            {{"quality", 0}, {"strength", 0.3}},
                             {{"model", 1}, {"strength", 1}, {"radius", 0}, {"softness", 0.01}},
                             {{"model", 1}, {"strength", 0.7}, {"roundness", 0}},
                             {{"model", 1}, {"strength", 0.7}, {"roundness", 0.4}, {"radius", 2}}};
@@ -61,13 +66,59 @@ TEST_CASE("strength 0 changes no bit") {
     color.at(1, 0, 1) = infinity;
     const std::uint32_t payload = 0x7fc12345u;
     std::memcpy(&color.at(2, 0, 2), &payload, sizeof(payload));
-    for (double model : {0.0, 1.0}) {
-        const Values values = {{"model", model}, {"strength", 0}};
+    for (Values values : {natural, artistic, classic}) {
+        values["strength"] = 0;
         CHECK(same_bits(run_effect("vignette", {.color = color}, values), color));
         const Plan plan = plan_effect("vignette", {.color = color}, values);
         CHECK(plan.passes.empty());
         CHECK(plan.effects.at(0).moment == "configuration");
     }
+}
+
+TEST_CASE("the natural gain is cos^4 to 4 ulp at any field of view, aspect and size") {
+    const std::pair<int, int> sizes[] = {{640, 360}, {3840, 4}, {4, 2160}, {255, 257}};
+    for (double fov : {5.0, 38.0, 90.0, 170.0}) {
+        for (const auto& [width, height] : sizes) {
+            Input input{.color = constant(width, height, {1, 1, 1}), .camera = Camera::perspective(fov, 0.1)};
+            const Worst worst = worst_difference(run_effect("vignette", input, natural),
+                                                 reference(reference_input("vignette", input, natural)));
+            INFO(width << "x" << height << " at " << fov << " degrees");
+            CHECK(worst.absolute <= 4 * ulp);
+        }
+    }
+}
+
+TEST_CASE("cos^4 is what arrives through a small aperture") {
+    // Irradiance of a flat sensor under a Lambertian sky, seen through a disc of radius a at distance 1: the sum over
+    // the aperture's elements of cos(at the element) cos(at the sensor) / distance^2.
+    const double pi = std::acos(-1.0), a = 0.01;
+    const auto irradiance = [&](double t) {
+        double sum = 0;
+        constexpr int rings = 16, sectors = 32;
+        for (int i = 0; i < rings; ++i) {
+            for (int j = 0; j < sectors; ++j) {
+                const double r = a * std::sqrt((i + 0.5) / rings), angle = 2 * pi * (j + 0.5) / sectors;
+                const double x = t - r * std::cos(angle), y = r * std::sin(angle);
+                sum += 1 / std::pow(1 + x * x + y * y, 2);
+            }
+        }
+        return sum;
+    };
+    Input input{.color = constant(101, 1, {1, 1, 1}), .camera = Camera::perspective(2, 0.1)};
+    const Image image = run_effect("vignette", input, natural);
+    for (int x : {0, 20, 40, 60}) {
+        const double t = (2 * x + 1.0 - 101) * std::tan(pi / 180);
+        CHECK(image.at(x, 0, 0) == Approx(irradiance(t) / irradiance(0)).epsilon(5e-4)); // a^2 times some
+    }
+}
+
+TEST_CASE("classic is an ellipse and never negative") {
+    const Image image = gains(160, 40, classic);
+    // As far from the centre in pixels, but four times as far in texture coordinates.
+    CHECK(image.at(80, 39, 0) == Approx(1 - std::pow(0.6, 3)).margin(0.02));
+    CHECK(image.at(99, 20, 0) > 0.98f);
+    CHECK(image.at(0, 0, 0) == Approx(1 - std::pow(1.2 * std::sqrt(0.5), 3)).margin(0.03));
+    CHECK(*std::min_element(image.values.begin(), image.values.end()) > 0.38f);
 }
 
 TEST_CASE("a parallel projection has no natural falloff") {
@@ -126,7 +177,7 @@ TEST_CASE("the gain is symmetric on the screen, whatever the picture's shape") {
 
 TEST_CASE("twice the light gives twice the picture to the last bit") {
     const Image color = noise(41, 23, -5, 60);
-    for (const Values& values : {Values{}, natural, artistic}) {
+    for (const Values& values : {Values{}, natural, artistic, classic}) {
         const Image once = run_effect("vignette", {.color = color}, values);
         for (float factor : {0x1p10f, 0x1p-10f}) {
             Image scaled = color, expected = once;

@@ -25,21 +25,36 @@ constexpr postfx::Parameter parameters[] = {
         .about("Artistic: 1 is a circle, 0 an ellipse of the picture's shape"),
 };
 
+constexpr postfx_level levels[] = {
+    postfx::level("classic",
+                  "1 - (1.2 r)^3 of texture coordinates: an ellipse, whatever the lens and the model"),
+    postfx::level("medium", "exact up to rounding; other levels would be the same shader"),
+};
+enum LevelIndex { classic, medium };
+
 void plan(const postfx::Request& in, postfx::Builder& out) {
     if (in.number("strength") == 0) return out.identity("strength is 0");
+    if (in.level() == classic) {
+        out.compose("vignette_classic.glsl");
+        return;
+    }
+    const postfx_camera& camera = in.camera();
     const bool natural = in.choice("model") == 0;
-    if (natural && in.camera().orthographic) {
+    if (natural && camera.orthographic) {
         return out.not_called_for("exact", "the natural falloff of a parallel projection is 1 everywhere");
     }
-    // Picture heights per half pixel; roundness 0 squeezes the width to the height.
+    // What half a pixel is worth. Natural: tangents of angles, of square pixels. Artistic: picture heights;
+    // roundness 0 squeezes the width to the height.
+    const double half_pixel = (natural ? camera.tan_half_fov : 0.5) / in.height();
     const double roundness = in.number("roundness"), aspect = double(in.width()) / in.height();
-    const double unit = 0.5 / in.height();
-    out.compose("vignette.glsl").value("scale", unit * (roundness + (1 - roundness) / aspect), unit);
+    const double across = natural ? 1 : roundness + (1 - roundness) / aspect;
+    out.compose("vignette.glsl").value("scale", half_pixel * across, half_pixel);
 }
 
 constexpr auto vignette = postfx::effect<plan>("vignette")
                               .about("Darkens the picture towards its corners")
-                              .with_parameters(parameters);
+                              .with_parameters(parameters)
+                              .with_levels(levels, medium);
 
 } // namespace
 

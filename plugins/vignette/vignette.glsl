@@ -6,8 +6,8 @@ vec2 vignette_offset(Pixel pixel) {
 
 // cos^4 of the angle between the pixel's ray and the axis. With t = tan(angle) it is 1 / (1 + t^2)^2, without any
 // trigonometry.
-float vignette_natural(Pixel pixel) {
-    vec2 slope = vignette_offset(pixel) / vec2(pixel.size) * u_frame.half_extent;
+float vignette_natural(Pixel pixel, VignetteParams params) {
+    vec2 slope = vignette_offset(pixel) * params.scale;
     float cos_squared = 1.0 / (1.0 + dot(slope, slope));
     return cos_squared * cos_squared;
 }
@@ -20,9 +20,10 @@ float vignette_artistic(Pixel pixel, VignetteParams params) {
 }
 
 vec3 vignette(vec3 color, Pixel pixel, VignetteParams params) {
-    float shape = VIGNETTE_MODEL == 0 ? vignette_natural(pixel) : vignette_artistic(pixel, params);
+    float shape = VIGNETTE_MODEL == 0 ? vignette_natural(pixel, params) : vignette_artistic(pixel, params);
     // In this form the gain is exactly 1 where shape is 1, and exactly shape where strength is 1.
     float gain = (1.0 - params.strength) + params.strength * shape;
-    // Where no light arrives the picture is black whatever the scene holds: 0 * infinity would be NaN.
-    return gain > 0.0 ? color * gain : vec3(0.0);
+    // cos^4 is never 0. Where no light arrives the picture is black whatever the scene holds: 0 * infinity would be
+    // NaN.
+    return VIGNETTE_MODEL == 0 || gain > 0.0 ? color * gain : vec3(0.0);
 }
