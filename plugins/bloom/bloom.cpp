@@ -3,9 +3,10 @@
 #include <postfx/plugin.hpp>
 
 #include <algorithm>
-#include <array>
-#include <numeric>
+#include <cmath>
+#include <span>
 #include <string>
+#include <vector>
 
 namespace {
 
@@ -28,121 +29,284 @@ constexpr postfx::Parameter parameters[] = {
     postfx::number("threshold", 1.0).range(0, 1000).about("Luminous pixels start here (threshold mode only)"),
     postfx::number("knee", 0.5).range(0, 1).about("Softness of the threshold, as a fraction of it"),
     postfx::color("tint", 1, 1, 1).range(0, 1).about("Colour that the glow is multiplied by"),
+    postfx::number("firefly_guard", 0)
+        .range(0, 1)
+        .about("For the glow, a pixel is at most 1/this times as bright as the mean of its neighbours; 0: "
+               "off"),
 };
 constexpr const char* attachments[] = {"emission"};
 
-/// Sizes go up to 2^16 pixels, so a pyramid has at most 16 levels.
-constexpr int max_levels = 16;
-/// Energy of a level relative to the next wider one, 2^-1/2: the glow falls like r^-1.5 inside its radius.
-constexpr double narrower_share = 0.70710678118654752;
-
-/// Weight of each level's blur, widest last; continuous in `octaves`: the deepest level comes in from 0.
-struct Weights {
-    int levels;
-    std::array<double, max_levels> level;
-
-    explicit Weights(double octaves) : levels(std::max(1, static_cast<int>(std::ceil(octaves)))), level{} {
-        level[levels - 1] = 1 + octaves - levels;
-        double weight = std::pow(narrower_share, octaves - (levels - 1));
-        for (int i = levels - 2; i >= 0; --i, weight *= narrower_share)
-            level[i] = weight;
-    }
-    double sum() const { return std::accumulate(level.begin(), level.begin() + levels, 0.0); }
+enum LevelIndex { low, medium, high, ultra, reference, classic };
+constexpr postfx_level levels[] = {
+    postfx::level("low", "Pyramid from a quarter of the size"),
+    postfx::level("medium", "Pyramid from half the size"),
+    postfx::level("high", "Pyramid from the full size, two widths per octave"),
+    postfx::level("ultra", "Pyramid from the full size, two rounder widths per octave"),
+    postfx::level("reference", "Full size throughout, four widths per octave; slow"),
+    postfx::level("classic", "21x21 texels of a Gaussian some pixels apart; loses light, shows the texels"),
 };
 
-/// Below one octave the glow fades out instead of narrowing.
-double fade(double octaves) {
-    return std::min(octaves, 1.0);
+/// A blur along lines, of five texels: weights of the two nearest and of the two farthest.
+struct Line {
+    double near, far;
+    constexpr double variance() const { return 2 * near + 8 * far; }
+};
+constexpr Line eighth{1.0 / 16, 0}, quarter{1.0 / 8, 0}, half{1.0 / 4, 0}, whole{1.0 / 4, 1.0 / 16};
+constexpr Line high_lines[] = {half};
+constexpr Line ultra_first[] = {quarter, quarter}, ultra_lines[] = {whole};
+constexpr Line reference_first[] = {eighth, eighth, quarter, half};
+constexpr Line reference_lines[] = {whole, whole, whole, whole};
+
+struct Rung {
+    int block;                   ///< pixels per texel of the finest blurred image, on each axis
+    bool halves;                 ///< or else the lines' texels move apart, at full size
+    int linear_ups;              ///< steps up that interpolate linearly, from the picture on
+    std::span<const Line> first; ///< blurs at full size before the first halving
+    std::span<const Line> lines; ///< blurs between two halvings
+};
+constexpr Rung rungs[] = {
+    {4, true, 1, {}, {}},
+    {2, true, 2, {}, {}},
+    {1, true, 1, high_lines, high_lines},
+    {1, true, 1, ultra_first, ultra_lines},
+    {1, false, 0, reference_first, reference_lines},
+};
+
+/// Variances of the passes' kernels on each axis, in squared texels of the finer of the two levels they join.
+constexpr double variance_first_down = 0.75, variance_first_quarter = 2, variance_down = 1.75;
+constexpr double variance_smooth_up = 1.25, variance_linear_up = 0.75, variance_linear_up_from_quarter = 2.75;
+
+/// One blur after another makes every wider one. Each goes from an image to another of the same size (a line), or
+/// by way of a coarser one.
+struct Blur {
+    int finer, coarser; ///< images: 0 is the picture's size, each next half of it
+    double variance;    ///< that it adds on each axis [px^2]
+    Line line{};        ///< if finer == coarser
+    int step = 1;       ///< texels between those of the line
+};
+
+Blur halving(const Rung& rung, int finer) {
+    if (finer == 0 && rung.block == 4)
+        return {0, 2, variance_first_quarter + variance_linear_up_from_quarter};
+    const double down = finer == 0 && rung.block == 2 ? variance_first_down : variance_down;
+    const double up = finer < rung.linear_ups ? variance_linear_up : variance_smooth_up;
+    return {finer, finer + 1, std::pow(4, finer) * (down + up)};
 }
 
-/// Variances on each axis of the kernels of the passes, in squared texels of the finer of the two levels they
-/// join.
-constexpr double variance_down = 1.75, variance_first_down = 0.75;
-constexpr double variance_tent = 2.75, variance_bilinear = 0.75;
-/// Levels from this one on (0 is half resolution) are brought up to by the tent, finer ones by linear
-/// interpolation.
-constexpr int first_tent = 1;
-
-/// Of the whole kernel on each axis [px^2]: variances of passes that follow each other add up.
-double variance(double octaves) {
-    const Weights weights(octaves);
-    double level_variance = variance_first_down + variance_bilinear;
+/// The blurs up to a sum of this variance, or as wide as makes sense in the picture.
+std::vector<Blur> blurs_for(const Rung& rung, double largest_variance, int longer_side) {
+    std::vector<Blur> blurs;
     double sum = 0;
-    double texel_area = 4;
-    for (int i = 0; i < weights.levels; ++i, texel_area *= 4) {
-        sum += weights.level[i] * level_variance;
-        level_variance += texel_area * (variance_down + (i < first_tent ? variance_bilinear : variance_tent));
+    const auto add = [&](const Blur& blur) {
+        if (sum >= largest_variance && !blurs.empty()) return;
+        blurs.push_back(blur);
+        sum += blur.variance;
+    };
+    for (const Line& line : rung.first)
+        add({0, 0, line.variance(), line});
+    const int last = std::max(rung.block / 2, static_cast<int>(std::ceil(std::log2(longer_side))));
+    for (int size = 0; size < last && sum < largest_variance;) {
+        if (rung.halves) {
+            add(halving(rung, size));
+            size = blurs.back().coarser;
+        }
+        const double texel_area = std::pow(4, size);
+        for (const Line& line : rung.lines) {
+            add({rung.halves ? size : 0, rung.halves ? size : 0, texel_area * line.variance(), line,
+                 rung.halves ? 1 : 1 << size});
+        }
+        if (!rung.halves) ++size;
     }
-    return fade(octaves) * sum / weights.sum();
+    return blurs;
 }
 
-/// Depth of the pyramid whose kernel has this standard deviation, or as much as the picture allows.
-double octaves_for(double deviation_pixels, int longer_side) {
-    double low = 0;
-    double high = std::clamp(std::ceil(std::log2(longer_side)), 1.0, static_cast<double>(max_levels));
-    if (variance(high) <= deviation_pixels * deviation_pixels) return high;
-    for (int i = 0; i < 40; ++i) { // to 16 * 2^-40 of an octave
-        const double middle = (low + high) / 2;
-        (variance(middle) < deviation_pixels * deviation_pixels ? low : high) = middle;
+/// The glow is a sum of Gaussians of which the share (v/widest)^1/4 has a variance below v: it falls like r^-1.5 up
+/// to sqrt(widest), and has the variance widest/5.
+constexpr double widest_over_mean = 5;
+
+/// Shares of that sum for the picture itself and after each of the blurs: what lies between two variances goes to
+/// both, so that mean and variance are kept. What is wider than the last goes to the last.
+std::vector<double> shares_of(const std::vector<Blur>& blurs, double widest) {
+    std::vector<double> shares(blurs.size() + 1, 0.0);
+    double lower = 0;
+    if (widest == 0) shares[0] = 1; // what underflowed
+    const auto share_below = [&](double v) { return std::pow(v / widest, 0.25); };
+    for (std::size_t i = 0; i < blurs.size(); ++i) {
+        const double upper = lower + blurs[i].variance, end = std::min(upper, widest);
+        if (end <= lower) break;
+        const double share = share_below(end) - share_below(lower);
+        const double mean = (end * share_below(end) - lower * share_below(lower)) / widest_over_mean / share;
+        const double to_upper = (mean - lower) / (upper - lower);
+        shares[i] += share * (1 - to_upper);
+        shares[i + 1] += share * to_upper;
+        lower = upper;
     }
-    return high;
+    if (lower < widest) shares.back() += 1 - share_below(lower);
+    return shares;
 }
 
-postfx::PlanImage pass_down_and_up(const postfx::Request& in, postfx::Builder& out, const Weights& weights) {
-    const Mode mode = static_cast<Mode>(in.choice("mode"));
-    const double start = in.number("threshold");
-    const double half_width = start * in.number("knee");
-    std::array<postfx::PlanImage, max_levels> level;
-    level[0] = out.pass("down_1", "bloom_first_down.glsl")
-                   .reads("source", mode == emission ? out.attachment("emission") : out.color(), "nearest")
-                   .value("knee_start", start - half_width)
-                   .value("knee_end", start + half_width)
-                   .constant("BLOOM_HAS_THRESHOLD", mode == threshold ? 1 : 0)
-                   .scale(0.5);
-    for (int i = 1; i < weights.levels; ++i) {
-        level[i] = out.pass(("down_" + std::to_string(i + 1)).c_str(), "bloom_down.glsl")
-                       .reads("finer", level[i - 1], "nearest")
-                       .scale_of(level[i - 1], 0.5);
-    }
-    postfx::PlanImage glow = level[weights.levels - 1];
-    double wider = weights.level[weights.levels - 1];
-    for (int i = weights.levels - 2; i >= 0; --i) {
-        const double all = wider + weights.level[i];
-        glow = out.pass(("up_" + std::to_string(i + 1)).c_str(), "bloom_up.glsl")
-                   .reads("own", level[i], "nearest")
-                   .reads("wider", glow, "nearest")
-                   .value("wider_share", wider / all)
-                   .constant("BLOOM_UP_IS_TENT", i < first_tent ? 0 : 1)
-                   .scale_of(level[i], 1.0);
-        wider = all;
-    }
-    return glow;
+int divide_up(int size, int part) {
+    return (size + part - 1) / part;
 }
+
+/// The picture's side in texels of an image of 1/2^size: the last of them may lie over the border.
+double extent(int side, int size) {
+    return side / std::pow(2, size);
+}
+
+/// Declares the passes of one chain of blurs.
+class Passes {
+public:
+    Passes(const postfx::Request& in, postfx::Builder& out) : in_(in), out_(out) {}
+
+    /// The image that glows, at the picture's size: read as it is, or made by a pass.
+    postfx::PlanImage source() { return mode() == emission ? out_.attachment("emission") : out_.color(); }
+    postfx::PlanImage light() {
+        return out_.pass("light", "bloom_light.glsl")
+            .reads("source", source(), "nearest")
+            .value("knee_start", knee_start())
+            .value("knee_end", knee_end())
+            .constant("BLOOM_HAS_THRESHOLD", has_threshold())
+            .constant("BLOOM_HAS_FIREFLY_GUARD", has_guard());
+    }
+
+    /// The sum of all blurs but the first if that halves: bringing that up is left to compose().
+    postfx::PlanImage glow(const Rung& rung, const std::vector<Blur>& blurs,
+                           const std::vector<double>& shares) {
+        halve(rung, blurs);
+        postfx::PlanImage wider = sizes_[static_cast<std::size_t>(blurs.back().coarser)];
+        double wider_share = shares.back();
+        for (std::size_t i = blurs.size(); i-- > 0;) {
+            const bool is_first = i == 0;
+            if (is_first && blurs[i].finer != blurs[i].coarser) break;
+            const double own_share = is_first ? 0 : shares[i];
+            wider = widen(rung, blurs[i], i, wider, own_share / (own_share + wider_share));
+            wider_share += own_share;
+        }
+        return wider;
+    }
+
+    postfx::PlanImage classic_glow() {
+        const double deviation = in_.number("radius") * in_.height();
+        return out_.pass("classic", "bloom_classic.glsl")
+            .reads("light", light(), "nearest")
+            .int_value("stride", std::max(1, static_cast<int>(std::lround(deviation / 5))));
+    }
+
+    /// `scattered`: share of the glow that leaves its pixel; the rest is left as it is.
+    void compose(postfx::PlanImage glow, int block, double scattered) {
+        const double strength = in_.number("intensity") * scattered;
+        const double* tint = in_.color("tint");
+        out_.compose("bloom.glsl")
+            .reads("glow", glow)
+            .constant("BLOOM_BLOCK", block)
+            .constant("BLOOM_ADDS", mode() == scatter ? 0 : 1)
+            .value("uv_per_pixel", 1.0 / (block * divide_up(in_.width(), block)),
+                   1.0 / (block * divide_up(in_.height(), block)))
+            .value("kept", 1 - strength)
+            .value("gain", strength * tint[0], strength * tint[1], strength * tint[2]);
+    }
+
+private:
+    Mode mode() const { return static_cast<Mode>(in_.choice("mode")); }
+    int has_threshold() const { return mode() == threshold ? 1 : 0; }
+    int has_guard() const { return in_.number("firefly_guard") > 0 ? 1 : 0; }
+    double knee_start() const { return in_.number("threshold") * (1 - in_.number("knee")); }
+    double knee_end() const { return in_.number("threshold") * (1 + in_.number("knee")); }
+
+    /// The light at every size that the blurs go by.
+    void halve(const Rung& rung, const std::vector<Blur>& blurs) {
+        const bool is_made = rung.block == 1 || has_guard() == 1;
+        sizes_ = {is_made ? light() : source()};
+        for (const Blur& blur : blurs) {
+            if (blur.coarser == blur.finer) continue;
+            if (blur.finer == 0 && rung.block > 1) {
+                sizes_.resize(static_cast<std::size_t>(blur.coarser) + 1, sizes_[0]);
+                sizes_.back() = first_down(rung, is_made ? 0 : has_threshold());
+            } else {
+                sizes_.push_back(
+                    out_.pass(("down_" + std::to_string(blur.coarser)).c_str(), "bloom_down.glsl")
+                        .reads("finer", sizes_.back())
+                        .value("extent", extent(in_.width(), blur.finer), extent(in_.height(), blur.finer))
+                        .scale_of(sizes_.back(), 0.5));
+            }
+        }
+    }
+    postfx::PlanImage first_down(const Rung& rung, int has_threshold) {
+        const bool is_quarter = rung.block == 4;
+        return out_
+            .pass(is_quarter ? "down_2" : "down_1",
+                  is_quarter ? "bloom_first_quarter.glsl" : "bloom_first_down.glsl")
+            .reads("source", sizes_[0], is_quarter ? "linear" : "nearest")
+            .value("knee_start", knee_start())
+            .value("knee_end", knee_end())
+            .constant("BLOOM_HAS_THRESHOLD", has_threshold)
+            .scale(1.0 / rung.block);
+    }
+
+    /// One more blur of the wider ones' sum, mixed with the light at the finer size.
+    postfx::PlanImage widen(const Rung& rung, const Blur& blur, std::size_t index, postfx::PlanImage wider,
+                            double own_share) {
+        const postfx::PlanImage own = sizes_[static_cast<std::size_t>(blur.finer)];
+        if (blur.finer != blur.coarser) {
+            return out_.pass(("up_" + std::to_string(blur.finer)).c_str(), "bloom_up.glsl")
+                .reads("own", own, "nearest")
+                .reads("wider", wider)
+                .value("own_share", own_share)
+                .value("extent", extent(in_.width(), blur.coarser), extent(in_.height(), blur.coarser))
+                .constant("BLOOM_UP_IS_SMOOTH", blur.finer < rung.linear_ups ? 0 : 1)
+                .scale_of(own, 1.0);
+        }
+        const std::string name = std::to_string(index);
+        const postfx::PlanImage across =
+            line(("across_" + name).c_str(), blur, {blur.step, 0}, own, wider, 0);
+        return line(("along_" + name).c_str(), blur, {0, blur.step}, own, across, own_share);
+    }
+    struct Step {
+        int x, y;
+    };
+    postfx::PlanImage line(const char* name, const Blur& blur, Step step, postfx::PlanImage own,
+                           postfx::PlanImage wider, double own_share) {
+        return out_.pass(name, "bloom_line.glsl")
+            .reads("own", own, "nearest")
+            .reads("wider", wider)
+            .value("offset", step.x, step.y)
+            .value("extent", extent(in_.width(), blur.finer), extent(in_.height(), blur.finer))
+            .constant("BLOOM_LINE_IS_COARSE", blur.finer == 0 ? 0 : 1)
+            .value("near", blur.line.near)
+            .value("far", blur.line.far)
+            .value("own_share", own_share)
+            .scale_of(own, 1.0);
+    }
+
+    const postfx::Request& in_;
+    postfx::Builder& out_;
+    std::vector<postfx::PlanImage> sizes_; ///< the light at 1, 1/2, 1/4 ... of the picture's size
+};
 
 void plan(const postfx::Request& in, postfx::Builder& out) {
-    const Mode mode = static_cast<Mode>(in.choice("mode"));
     if (in.number("intensity") == 0) return out.identity("intensity is 0");
     if (in.number("radius") == 0) return out.identity("radius is 0");
-    if (mode == emission && !in.has("emission")) {
+    if (in.choice("mode") == emission && !in.has("emission")) {
         return out.not_called_for("exact", "there is no emission attachment, so nothing glows");
     }
-    const double octaves = octaves_for(in.number("radius") * in.height(), std::max(in.width(), in.height()));
-    const double strength = in.number("intensity") * fade(octaves);
-    const double* tint = in.color("tint");
-    // What is added may not lift a half float over its largest value; a weighted mean can't.
-    const double ceiling = mode == scatter ? 3.4e38 : 65504;
-    const postfx::PlanImage glow = pass_down_and_up(in, out, Weights(octaves));
-    out.compose("bloom.glsl")
-        .reads("glow", glow, "nearest")
-        .value("kept", mode == scatter ? 1 - strength : 1)
-        .value("gain", strength * tint[0], strength * tint[1], strength * tint[2])
-        .value("ceiling", ceiling);
+    Passes passes(in, out);
+    if (in.level() == classic) return passes.compose(passes.classic_glow(), 1, 1);
+
+    const Rung& rung = rungs[in.level()];
+    const double widest = widest_over_mean * std::pow(in.number("radius") * in.height(), 2);
+    const std::vector<Blur> blurs = blurs_for(rung, widest, std::max(in.width(), in.height()));
+    const std::vector<double> shares = shares_of(blurs, widest);
+    const double scattered = 1 - shares[0];
+    if (scattered == 0) return out.identity("the radius is too far below a pixel to count");
+    passes.compose(passes.glow(rung, blurs, shares), rung.block, scattered);
 }
 
 constexpr auto bloom = postfx::effect<plan>("bloom")
                            .about("Light scattered around bright places")
                            .with_parameters(parameters)
-                           .reading(attachments);
+                           .reading(attachments)
+                           .with_levels(levels, medium);
 
 } // namespace
 
