@@ -1,6 +1,6 @@
 # postfx_add_effect(<name> [DIRECTORY <dir>] [OUTPUT_DIRECTORY <dir>])
 #
-# Builds one effect from its folder: <name>.cpp (and other *.cpp but reference.cpp and test.cpp) with every *.glsl
+# Builds one effect from its folder: <name>.cpp (and other *.cpp but reference.cpp, test.cpp, test_*.cpp) with every *.glsl
 # embedded, as the plugin postfx_<name>.so in OUTPUT_DIRECTORY (<build>/postfx_plugins). With test.cpp and reference.cpp there, also the test
 # <name>_gl_test. In the postfx tree it is called for every folder of plugins/; an out-of-tree effect calls it after
 # find_package(postfx).
@@ -31,7 +31,7 @@ function(postfx_add_effect name)
     set(effect_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/postfx_plugins)
   endif()
   file(GLOB sources CONFIGURE_DEPENDS ${effect_DIRECTORY}/*.cpp)
-  list(FILTER sources EXCLUDE REGEX "/(reference|test)\\.cpp$")
+  list(FILTER sources EXCLUDE REGEX "/(reference|test|test_[a-z_]+)\\.cpp$")
   set(target postfx_effect_${name})
   add_library(${target} MODULE ${sources})
   set_target_properties(${target} PROPERTIES
@@ -52,7 +52,8 @@ function(postfx_add_effect name)
   postfx_embed_glsl(${target} ${effect_DIRECTORY} postfx_embedded_sources.h)
 
   if(TARGET postfx::gl_test_main AND EXISTS ${effect_DIRECTORY}/test.cpp)
-    add_executable(${name}_gl_test ${effect_DIRECTORY}/test.cpp ${effect_DIRECTORY}/reference.cpp)
+    file(GLOB more_tests CONFIGURE_DEPENDS ${effect_DIRECTORY}/test_*.cpp)
+    add_executable(${name}_gl_test ${effect_DIRECTORY}/test.cpp ${effect_DIRECTORY}/reference.cpp ${more_tests})
     target_link_libraries(${name}_gl_test PRIVATE postfx::gl_test_main)
     target_compile_definitions(${name}_gl_test PRIVATE POSTFX_EFFECT_DIRECTORY="${effect_DIRECTORY}")
     set_target_properties(${name}_gl_test PROPERTIES CXX_STANDARD 20 CXX_STANDARD_REQUIRED ON CXX_EXTENSIONS OFF)

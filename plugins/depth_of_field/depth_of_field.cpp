@@ -11,6 +11,7 @@ namespace {
 constexpr double pinhole = 128; ///< the f-number that counts as infinite
 
 constexpr const char* views[] = {"picture", "circle_of_confusion"};
+enum View { picture, circle_of_confusion };
 
 constexpr postfx::Parameter parameters[] = {
     postfx::number("focus_distance", 0)
@@ -33,20 +34,53 @@ constexpr postfx::Parameter parameters[] = {
         .in_unit("height")
         .identity_at(0)
         .about("Largest diameter of the blur of a point; beyond it blur grows no more"),
+    postfx::number("axial_aberration", 0)
+        .range(0, 0.05)
+        .about(
+            "How much longer the focal length is for red than for blue, as a share of it; 0.016 is one lens "
+            "of crown glass"),
+    postfx::integer("lens_samples", 256)
+        .range(1, 1024)
+        .logarithmic()
+        .about("Points of the lens per pixel, of the level reference; what is left of noise falls with them"),
     postfx::choice("view", views)
         .constant()
         .about("picture, or the circle's diameter [px]: red in front of the focus, blue behind"),
 };
 constexpr const char* attachments[] = {"depth"};
 
+/// Of the levels that gather in reduced layers.
+struct Gather {
+    int largest_radius; ///< texels; for larger circles the layers get coarser, so that the cost does not grow
+    int finest_block;   ///< a texel of the layers is at least so many pixels wide
+    /// 1: every texel of a disc is visited; 2: every second; 4: every fourth. If not all, a pass joins the parts.
+    /// Lights lie behind the focus more often than before it, so that the background gets the denser one.
+    int background_lattice, foreground_lattice;
+    /// Edge of a tile, texels. A tile and its eight neighbours must hold everything that reaches a texel of the
+    /// tile or one beside it: largest_radius + half a texel of edge + 1.
+    int tile;
+};
+
+enum LevelIndex { low, medium, high, ultra, reference, classic };
+constexpr postfx_level levels[] = {
+    postfx::level("low", "Discs of up to 21 samples, in layers of a quarter of the size at 720 rows"),
+    postfx::level("medium", "Discs of up to 69 samples (near: 35), in layers of half the size at 720 rows"),
+    postfx::level("high", "Discs of up to 137 samples, in layers of half the size at 720 rows"),
+    postfx::level("ultra", "Discs of up to 241 samples, in layers of the full size at 720 rows"),
+    postfx::level("reference", "The picture from many points of the lens, one after the other; slow"),
+    postfx::level("classic", "Mean of a square; leaks, and near surfaces keep sharp edges"),
+};
+constexpr Gather gathers[] = {{3, 2, 2, 2, 8}, {6, 2, 2, 4, 8}, {6, 2, 1, 1, 8}, {12, 1, 2, 2, 16}};
+
 /// Circles up to this diameter [px] count as sharp and stay untouched.
 constexpr double sharp_diameter = 1;
-/// Radius of the largest gather, in texels of the reduced layers; 6 is at most 137 taps. More means finer
-/// layers for the same circle.
-constexpr double largest_radius = 6;
-/// Edge of a tile, texels. A tile and its eight neighbours must hold everything that reaches a texel of the
-/// tile or one beside it: largest_radius + half a texel of edge + 1.
-constexpr int tile_size = 8;
+/// Of a gathered disc, texels: the texel itself.
+constexpr double smallest_radius = 0.5;
+/// Entries of the table of the discs' weights. Between them the sum is off by less than 2e-3.
+constexpr int disc_entries = 256;
+/// Of the layers. Every texel is read up to 137 times, and software rasterisers pay for each conversion from half
+/// floats as much as for the fetch.
+constexpr const char* gathered = "rgba32f";
 
 /// Signed diameter of the circle of confusion [px], affine in the raw depth sample d, negative in front:
 ///     clamp(d == sky depth ? sky : scale * d + offset, -limit, limit)
@@ -83,69 +117,165 @@ Lens orthographic_lens(const postfx::Request& in) {
     return {per_metre * camera.depth_scale, per_metre * (camera.depth_offset - focus), unbounded, unbounded};
 }
 
-struct Reduction {
-    int block; ///< a texel of the reduced layers is block x block pixels
-    std::uint32_t width, height, tiles_x, tiles_y;
+/// Shift of the signed circle [px] for red, green and blue. The sensor stays where green (549 nm) is sharp; a focal
+/// length longer by the share e moves the focus from S to 1/S' = 1/S - e/f, and with it every circle by -K S e/f.
+struct AxialShift {
+    double red = 0, green = 0, blue = 0;
+    bool any() const { return red != 0 || blue != 0; }
+    double reach() const { return std::max(std::abs(red), std::abs(blue)); }
 };
+
+AxialShift axial_shift(const postfx::Request& in, double limit) {
+    const postfx_camera& camera = in.camera();
+    const double heights =
+        camera.orthographic != 0 ? focus_metres(in) / camera.vertical_extent : 1 / (2 * camera.tan_half_fov);
+    // Cauchy's n = A + B / wavelength^2 at 612, 549 and 464 nm: shares of the difference between red and blue.
+    constexpr double red = 1 / (0.612 * 0.612), green = 1 / (0.549 * 0.549), blue = 1 / (0.464 * 0.464);
+    const double whole =
+        std::min(in.number("axial_aberration") * heights * in.height() / in.number("f_number"), limit);
+    return {-whole * (green - red) / (blue - red), 0, whole * (blue - green) / (blue - red)};
+}
+
+/// Square of the radius [texels] of a disc that spreads as much as all but the gathered disc does (radius^2 = 4
+/// variances): the block's box 1/12, linear interpolation 1/6, joining a lattice's parts 1/2.
+double own_spread(int lattice) {
+    return 4 * (1.0 / 12 + 1.0 / 6 + (lattice == 1 ? 0 : 1.0 / 2));
+}
+
+/// 1 / (the smallest circle [px] that the layers can blur by - the largest sharp one).
+double share_slope(int lattice, int block) {
+    const double radius = block * std::sqrt(own_spread(lattice) + smallest_radius * smallest_radius);
+    return 1 / (2 * radius - sharp_diameter);
+}
 
 std::uint32_t divide_up(int size, int part) {
     return static_cast<std::uint32_t>((size + part - 1) / part);
 }
 
-/// Half resolution, or less when the largest circle would not fit the gather: the cost never grows with the
-/// circle.
-Reduction reduce(const postfx::Request& in, double largest_diameter) {
-    const int block = std::max(2, static_cast<int>(std::ceil(largest_diameter / 2 / largest_radius)));
-    return {block, divide_up(in.width(), block), divide_up(in.height(), block),
-            divide_up(in.width(), block * tile_size), divide_up(in.height(), block * tile_size)};
-}
+/// The picture split into background and foreground, each blurred at a reduced size.
+void declare_gathers(const postfx::Request& in, postfx::Builder& out, const Lens& lens,
+                     const Gather& gather) {
+    const AxialShift shift = axial_shift(in, lens.limit);
+    const double largest = (lens.limit + shift.reach()) / 2; // pixels
+    const int block =
+        std::max(gather.finest_block, static_cast<int>(std::ceil(largest / gather.largest_radius)));
+    const double texels = 0.5 / block; // of radius per pixel of diameter
+    const double far_slope = share_slope(gather.background_lattice, block);
+    const double near_slope = share_slope(gather.foreground_lattice, block);
+    const std::uint32_t width = divide_up(in.width(), block), height = divide_up(in.height(), block);
+    const std::uint32_t tiles_x = divide_up(in.width(), block * gather.tile);
+    const std::uint32_t tiles_y = divide_up(in.height(), block * gather.tile);
+    const int axial = shift.any() ? 1 : 0;
 
-void declare_passes(const postfx::Request& in, postfx::Builder& out, const Lens& lens) {
-    const Reduction size = reduce(in, lens.limit);
-    const double softening = 1 / (2 * size.block - sharp_diameter);
     const postfx::PlanImage depth = out.attachment("depth");
-    const postfx::PlanImage background = out.pass("layers", "depth_of_field_layers.glsl")
-                                             .reads("source", out.color(), "nearest")
-                                             .reads("depth", depth, "nearest")
-                                             .value("lens", lens.scale, lens.offset, lens.sky, lens.limit)
-                                             .value("sharp_diameter", sharp_diameter)
-                                             .value("softening", softening)
-                                             .int_value("block", size.block)
-                                             .formats({"", "", "rg32f"})
-                                             .sized(size.width, size.height);
+    const postfx::PlanImage discs = out.pass("discs", "depth_of_field_discs.glsl")
+                                        .value("largest_radius", gather.largest_radius)
+                                        .constant("DEPTH_OF_FIELD_LATTICE", gather.foreground_lattice)
+                                        .format("r32f")
+                                        .sized(disc_entries, 1);
+    const postfx::PlanImage background =
+        out.pass("layers", "depth_of_field_layers.glsl")
+            .reads("source", out.color(), "nearest")
+            .reads("depth", depth, "nearest")
+            .reads("discs", discs, "nearest")
+            .value("lens", lens.scale, lens.offset, lens.sky, lens.limit)
+            .value("entries_per_texel", (disc_entries - 1) / (gather.largest_radius - smallest_radius))
+            .constant("DEPTH_OF_FIELD_BLOCK", block)
+            .constant("DEPTH_OF_FIELD_FAR_SLOPE", far_slope)
+            .constant("DEPTH_OF_FIELD_NEAR_SLOPE", near_slope)
+            .constant("DEPTH_OF_FIELD_FAR_SPREAD", own_spread(gather.background_lattice))
+            .constant("DEPTH_OF_FIELD_NEAR_SPREAD", own_spread(gather.foreground_lattice))
+            .formats({gathered, gathered, "r32f"})
+            .sized(width, height);
     const postfx::PlanImage foreground = background.output(1);
-    const postfx::PlanImage foreground_shape = background.output(2);
+    const postfx::PlanImage thickness = background.output(2);
     const postfx::PlanImage tiles = out.pass("tiles", "depth_of_field_tiles.glsl")
-                                        .reads("shape", foreground_shape, "nearest")
+                                        .reads("foreground", foreground, "nearest")
                                         .reads("background", background, "nearest")
-                                        .constant("DEPTH_OF_FIELD_TILE", tile_size)
+                                        .constant("DEPTH_OF_FIELD_TILE", gather.tile)
                                         .format("rg32f")
-                                        .sized(size.tiles_x, size.tiles_y);
+                                        .sized(tiles_x, tiles_y);
     const postfx::PlanImage reach = out.pass("reach", "depth_of_field_reach.glsl")
                                         .reads("tiles", tiles, "nearest")
                                         .format("rg32f")
-                                        .sized(size.tiles_x, size.tiles_y);
-    const postfx::PlanImage blurred_background = out.pass("background", "depth_of_field_background.glsl")
-                                                     .reads("layer", background, "nearest")
-                                                     .reads("reach", reach, "nearest")
-                                                     .constant("DEPTH_OF_FIELD_TILE", tile_size)
-                                                     .sized(size.width, size.height);
-    const postfx::PlanImage blurred_foreground = out.pass("foreground", "depth_of_field_foreground.glsl")
-                                                     .reads("layer", foreground, "nearest")
-                                                     .reads("shape", foreground_shape, "nearest")
-                                                     .reads("reach", reach, "nearest")
-                                                     .constant("DEPTH_OF_FIELD_TILE", tile_size)
-                                                     .sized(size.width, size.height);
+                                        .sized(tiles_x, tiles_y);
+    postfx::PlanImage blurred_background =
+        out.pass("background", "depth_of_field_background.glsl")
+            .reads("layer", background, "nearest")
+            .reads("reach", reach, "nearest")
+            .value("axial_shift", shift.red * texels, shift.green * texels, shift.blue * texels)
+            .value("axial_reach", shift.reach() * texels)
+            .constant("DEPTH_OF_FIELD_TILE", gather.tile)
+            .constant("DEPTH_OF_FIELD_LATTICE", gather.background_lattice)
+            .constant("DEPTH_OF_FIELD_AXIAL", axial)
+            .format(gathered)
+            .sized(width, height);
+    postfx::PlanImage blurred_foreground =
+        out.pass("foreground", "depth_of_field_foreground.glsl")
+            .reads("layer", foreground, "nearest")
+            .reads("thickness", thickness, "nearest")
+            .reads("reach", reach, "nearest")
+            .value("axial_shift", -shift.red * texels, -shift.green * texels, -shift.blue * texels)
+            .value("axial_reach", shift.reach() * texels)
+            .constant("DEPTH_OF_FIELD_TILE", gather.tile)
+            .constant("DEPTH_OF_FIELD_LATTICE", gather.foreground_lattice)
+            .constant("DEPTH_OF_FIELD_AXIAL", axial)
+            .format(gathered)
+            .sized(width, height);
+    if (gather.background_lattice > 1) {
+        blurred_background = out.pass("fill", "depth_of_field_fill.glsl")
+                                 .reads("background", blurred_background, "nearest")
+                                 .reads("foreground", blurred_foreground, "nearest")
+                                 .formats({gathered, gathered})
+                                 .sized(width, height);
+        blurred_foreground = blurred_background.output(1);
+    }
+    const char* filter = block == 1 ? "nearest" : "linear";
     out.compose("depth_of_field.glsl")
+        .constant("DEPTH_OF_FIELD_BY_HAND", block > 1 && block % 2 == 1 ? 1 : 0)
         .reads("depth", depth, "nearest")
-        .reads("background", blurred_background, "nearest")
-        .reads("foreground", blurred_foreground, "nearest")
-        .reads("reach", reach, "nearest")
+        .reads("background", blurred_background, filter)
+        .reads("foreground", blurred_foreground, filter)
         .value("lens", lens.scale, lens.offset, lens.sky, lens.limit)
-        .value("sharp_diameter", sharp_diameter)
-        .value("softening", softening)
-        .int_value("block", size.block)
-        .constant("DEPTH_OF_FIELD_TILE", tile_size);
+        .value("layer_scale", 1 / (double(block) * width), 1 / (double(block) * height))
+        .constant("DEPTH_OF_FIELD_FAR_SLOPE", far_slope)
+        .constant("DEPTH_OF_FIELD_NEAR_SLOPE", near_slope);
+}
+
+postfx::PlanImage declare_reference(const postfx::Request& in, postfx::Builder& out, const Lens& lens) {
+    const AxialShift shift = axial_shift(in, lens.limit);
+    const postfx::PlanImage circles = out.pass("circles", "depth_of_field_circles.glsl")
+                                          .reads("depth", out.attachment("depth"), "nearest")
+                                          .value("lens", lens.scale, lens.offset, lens.sky, lens.limit)
+                                          .format("r32f");
+    return out.pass("lens", "depth_of_field_lens.glsl")
+        .reads("source", out.color(), "nearest")
+        .reads("circles", circles, "nearest")
+        .value("axial_shift", shift.red, shift.green, shift.blue)
+        .value("limit", lens.limit)
+        .constant("DEPTH_OF_FIELD_AXIAL", shift.any() ? 1 : 0);
+}
+
+postfx::PlanImage declare_classic(postfx::Builder& out, const Lens& lens) {
+    return out.pass("classic", "depth_of_field_classic.glsl")
+        .reads("source", out.color(), "nearest")
+        .reads("depth", out.attachment("depth"), "nearest")
+        .value("lens", lens.scale, lens.offset, lens.sky, lens.limit);
+}
+
+void declare_passes(const postfx::Request& in, postfx::Builder& out, const Lens& lens) {
+    if (in.choice("view") == circle_of_confusion) {
+        out.compose("depth_of_field_view.glsl")
+            .reads("depth", out.attachment("depth"), "nearest")
+            .value("lens", lens.scale, lens.offset, lens.sky, lens.limit);
+    } else if (in.level() == reference) {
+        out.compose("depth_of_field_whole.glsl")
+            .reads("blurred", declare_reference(in, out, lens), "nearest");
+    } else if (in.level() == classic) {
+        out.compose("depth_of_field_whole.glsl").reads("blurred", declare_classic(out, lens), "nearest");
+    } else {
+        declare_gathers(in, out, lens, gathers[in.level()]);
+    }
 }
 
 void plan(const postfx::Request& in, postfx::Builder& out) {
@@ -174,7 +304,8 @@ void plan(const postfx::Request& in, postfx::Builder& out) {
 constexpr auto depth_of_field = postfx::effect<plan>("depth_of_field")
                                     .about("Blur of what is not in focus, as by a lens")
                                     .with_parameters(parameters)
-                                    .reading(attachments);
+                                    .reading(attachments)
+                                    .with_levels(levels, medium);
 
 } // namespace
 

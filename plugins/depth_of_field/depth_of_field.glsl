@@ -1,37 +1,34 @@
 #include "depth_of_field_circle.glsl"
 #include "depth_of_field_light.glsl"
+#include "depth_of_field_share.glsl"
+
+// A reduced layer at a pixel, interpolated. In blocks of an odd number of pixels one lies on the texel's centre,
+// where the sampler's rounding would let neighbours in that must count for nothing: there the four taps are weighted
+// here.
+vec4 depth_of_field_layer(sampler2D layer, vec2 position, vec2 layer_scale) {
+    if (DEPTH_OF_FIELD_BY_HAND == 0) return textureLod(layer, position * layer_scale, 0.0);
+    ivec2 last = textureSize(layer, 0) - 1;
+    vec2 place = position * layer_scale * vec2(last + 1) - 0.5;
+    vec2 nearest = floor(place + 0.5);
+    vec2 fraction = place - nearest; // -0.5 to 0.5
+    fraction = mix(fraction, vec2(0.0), lessThan(abs(fraction), vec2(1.0 / 512.0)));
+    ivec2 own = ivec2(nearest), beside = clamp(own + ivec2(sign(fraction)), ivec2(0), last);
+    vec4 row = mix(texelFetch(layer, own, 0), texelFetch(layer, ivec2(beside.x, own.y), 0), abs(fraction.x));
+    vec4 other_row = mix(texelFetch(layer, ivec2(own.x, beside.y), 0), texelFetch(layer, beside, 0), abs(fraction.x));
+    return mix(row, other_row, abs(fraction.y));
+}
 
 // This pixel's own circle decides how much of it is sharp; blurred foreground lies over everything. Where foreground
 // thins out inside its own silhouette, the background found nearby shows.
 vec3 depth_of_field(vec3 color, Pixel pixel, DepthOfFieldParams params, sampler2D depth, sampler2D background,
-                    sampler2D foreground, sampler2D reach) {
+                    sampler2D foreground) {
     float circle = depth_of_field_circle(texelFetch(depth, pixel.index, 0).r, params.lens);
-    if (DEPTH_OF_FIELD_VIEW == 1) return vec3(max(-circle, 0.0), 0.0, max(circle, 0.0));
-    float share = clamp((abs(circle) - params.sharp_diameter) * params.softening, 0.0, 1.0);
+    float share = depth_of_field_share(circle);
     float far_share = circle > 0.0 ? share : 0.0;
     float near_share = circle > 0.0 ? 0.0 : share;
-    ivec2 texel = pixel.index / params.block;
-    bool covered = texelFetch(reach, texel / DEPTH_OF_FIELD_TILE, 0).r > 0.0;
-    if (share == 0.0 && !covered) return color;
-
-    vec2 place = pixel.position / float(params.block) - 0.5;
-    ivec2 corner = ivec2(floor(place));
-    vec2 fraction = place - vec2(corner);
-    ivec2 last = textureSize(background, 0) - 1;
-    vec4 behind = vec4(0.0), before = vec4(0.0);
-    for (int i = 0; i < 4; ++i) {
-        ivec2 offset = ivec2(i & 1, i >> 1);
-        vec2 part = mix(1.0 - fraction, fraction, vec2(offset));
-        ivec2 at = clamp(corner + offset, ivec2(0), last);
-        if (covered) before += part.x * part.y * texelFetch(foreground, at, 0);
-        if (share > 0.0) {
-            vec4 found = texelFetch(background, at, 0);
-            // A blurred pixel takes nothing from texels in focus; a near one may: they lie behind it.
-            if (found.a > 0.0 || (far_share == 0.0 && found.a == 0.0)) {
-                behind += part.x * part.y * vec4(found.rgb, 1.0);
-            }
-        }
-    }
+    // Both are multiplied by their weight in alpha, so that filtering leaves out what counts for nothing.
+    vec4 before = depth_of_field_layer(foreground, pixel.position, params.layer_scale);
+    vec4 behind = depth_of_field_layer(background, pixel.position, params.layer_scale);
     if (share == 0.0 && before.a == 0.0) return color;
     vec3 sharp = depth_of_field_light(color);
     vec3 blurred = sharp;

@@ -1,11 +1,12 @@
-// Of a tile: the largest blur radius [texels] of its foreground, 0 where there is none; 1 if any background is visible.
-vec4 depth_of_field_tiles(Pixel pixel, DepthOfFieldTilesParams params, sampler2D shape, sampler2D background) {
-    ivec2 last = textureSize(shape, 0) - 1;
+// Of a tile: the largest blur radius [texels] of its foreground, 0 where there is none; 1 if any background is
+// visible.
+vec4 depth_of_field_tiles(Pixel pixel, DepthOfFieldTilesParams params, sampler2D foreground, sampler2D background) {
+    ivec2 last = textureSize(foreground, 0) - 1;
     float radius = 0.0, visible = 0.0;
     for (int y = 0; y < DEPTH_OF_FIELD_TILE; ++y) {
         for (int x = 0; x < DEPTH_OF_FIELD_TILE; ++x) {
             ivec2 at = min(DEPTH_OF_FIELD_TILE * pixel.index + ivec2(x, y), last);
-            radius = max(radius, texelFetch(shape, at, 0).r);
+            radius = max(radius, texelFetch(foreground, at, 0).a);
             if (texelFetch(background, at, 0).a >= 0.0) visible = 1.0;
         }
     }

@@ -1,0 +1,17 @@
+#include "depth_of_field_disc.glsl"
+
+// Sum of a disc's weights over the lattice, for radii from 0.5 to the largest: what makes full coverage 1.
+vec4 depth_of_field_discs(Pixel pixel, DepthOfFieldDiscsParams params) {
+    float part = float(pixel.index.x) / float(pixel.size.x - 1);
+    float radius = 0.5 + part * (params.largest_radius - 0.5);
+    float outer = radius + 0.5;
+    int rows = int(outer);
+    float sum = 0.0;
+    for (int y = depth_of_field_first_row(rows); y <= rows; y += DEPTH_OF_FIELD_ROW_STEP) {
+        int columns = int(sqrt(outer * outer - float(y * y)));
+        for (int x = depth_of_field_first_column(columns, y); x <= columns; x += DEPTH_OF_FIELD_COLUMN_STEP) {
+            sum += depth_of_field_disc(radius, float(x * x + y * y));
+        }
+    }
+    return vec4(sum, 0.0, 0.0, 0.0);
+}
