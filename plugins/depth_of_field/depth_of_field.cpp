@@ -72,6 +72,9 @@ constexpr postfx_level levels[] = {
 };
 constexpr Gather gathers[] = {{3, 2, 2, 2, 8}, {6, 2, 2, 4, 8}, {6, 2, 1, 1, 8}, {12, 1, 2, 2, 16}};
 
+/// Pictures with fewer rows than twice this have layers of the full size.
+constexpr int rows_of_a_pixel = 360;
+
 /// Circles up to this diameter [px] count as sharp and stay untouched.
 constexpr double sharp_diameter = 1;
 /// Of a gathered disc, texels: the texel itself.
@@ -157,8 +160,9 @@ void declare_gathers(const postfx::Request& in, postfx::Builder& out, const Lens
                      const Gather& gather) {
     const AxialShift shift = axial_shift(in, lens.limit);
     const double largest = (lens.limit + shift.reach()) / 2; // pixels
-    const int block =
-        std::max(gather.finest_block, static_cast<int>(std::ceil(largest / gather.largest_radius)));
+    // Small pictures have finer layers, or their look would be another.
+    const int finest = std::min(gather.finest_block, std::max(1, in.height() / rows_of_a_pixel));
+    const int block = std::max(finest, static_cast<int>(std::ceil(largest / gather.largest_radius)));
     const double texels = 0.5 / block; // of radius per pixel of diameter
     const double far_slope = share_slope(gather.background_lattice, block);
     const double near_slope = share_slope(gather.foreground_lattice, block);

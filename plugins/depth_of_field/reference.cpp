@@ -144,9 +144,7 @@ class Model {
 public:
     explicit Model(const ReferenceInput& input)
         : input_(input), lens_(input), layers_(layers_of(input.value("quality"))), axial_(lens_.axial()),
-          block_(std::max(layers_.finest_block, static_cast<int>(std::ceil((lens_.limit() + axial_.largest())
-                                                                           / 2 / layers_.largest_radius)))),
-          width_((input.color.width + block_ - 1) / block_),
+          block_(block_of(input.color.height)), width_((input.color.width + block_ - 1) / block_),
           height_((input.color.height + block_ - 1) / block_) {}
 
     Image64 picture() {
@@ -362,6 +360,13 @@ private:
     Lens lens_;
     Layers layers_;
     Axial axial_;
+    /// Pixels: so many that the largest circle fits, and no fewer than the level has from 720 rows on.
+    int block_of(int rows) const {
+        const double largest = (lens_.limit() + axial_.largest()) / 2;
+        const int fitting = static_cast<int>(std::ceil(largest / layers_.largest_radius));
+        return std::max(fitting, rows >= 720 ? layers_.finest_block : 1);
+    }
+
     int block_, width_, height_;
     std::vector<Texel> texels_;
     std::vector<Blurred> background_;
