@@ -105,7 +105,7 @@ std::vector<Blur> blurs_for(const Rung& rung, double largest_variance, int longe
     for (const Line& line : rung.first)
         add({0, 0, line.variance(), line});
     const int last = std::max(rung.block / 2, static_cast<int>(std::ceil(std::log2(longer_side))));
-    for (int size = 0; size < last && sum < largest_variance;) {
+    for (int size = 0; size < last && (blurs.empty() || sum < largest_variance);) {
         if (rung.halves) {
             add(halving(rung, size));
             size = blurs.back().coarser;
@@ -159,6 +159,16 @@ class Passes {
 public:
     Passes(const postfx::Request& in, postfx::Builder& out) : in_(in), out_(out) {}
 
+    /// Where nothing is brighter than where glow begins, none is added. (Scattering changes all light.)
+    void ask_frame() {
+        if (mode() == scatter) return;
+        out_.skip_when("exact", "bloom_unlit.glsl",
+                       mode() == emission ? "brightest emission" : "brightest light",
+                       mode() == emission ? "none" : "start of the knee")
+            .reads("source", source(), "nearest")
+            .value("knee_start", has_threshold() == 1 ? knee_start() : 0);
+    }
+
     /// The image that glows, at the picture's size: read as it is, or made by a pass.
     postfx::PlanImage source() { return mode() == emission ? out_.attachment("emission") : out_.color(); }
     postfx::PlanImage light() {
@@ -180,8 +190,8 @@ public:
             const bool is_first = i == 0;
             if (is_first && blurs[i].finer != blurs[i].coarser) break;
             const double own_share = is_first ? 0 : shares[i];
-            wider = widen(rung, blurs[i], i, wider, own_share / (own_share + wider_share));
             wider_share += own_share;
+            wider = widen(rung, blurs[i], i, wider, wider_share > 0 ? own_share / wider_share : 0);
         }
         return wider;
     }
@@ -285,20 +295,27 @@ private:
 };
 
 void plan(const postfx::Request& in, postfx::Builder& out) {
-    if (in.number("intensity") == 0) return out.identity("intensity is 0");
-    if (in.number("radius") == 0) return out.identity("radius is 0");
-    if (in.choice("mode") == emission && !in.has("emission")) {
-        return out.not_called_for("exact", "there is no emission attachment, so nothing glows");
+    if (in.number("intensity") == 0 && out.identity("intensity is 0")) return;
+    if (in.number("radius") == 0 && out.identity("radius is 0")) return;
+    const Mode mode = static_cast<Mode>(in.choice("mode"));
+    if (mode == emission && !in.has("emission")) return out.lacks("there is no emission attachment");
+    if (mode == emission && in.is_empty("emission")
+        && out.not_called_for("exact", "nothing in view emits light")) {
+        return;
     }
     Passes passes(in, out);
-    if (in.level() == classic) return passes.compose(passes.classic_glow(), 1, 1);
+    if (in.level() == classic) {
+        passes.ask_frame();
+        return passes.compose(passes.classic_glow(), 1, 1);
+    }
 
     const Rung& rung = rungs[in.level()];
     const double widest = widest_over_mean * std::pow(in.number("radius") * in.height(), 2);
     const std::vector<Blur> blurs = blurs_for(rung, widest, std::max(in.width(), in.height()));
     const std::vector<double> shares = shares_of(blurs, widest);
     const double scattered = 1 - shares[0];
-    if (scattered == 0) return out.identity("the radius is too far below a pixel to count");
+    if (scattered == 0 && out.identity("the radius is too far below a pixel to count")) return;
+    passes.ask_frame();
     passes.compose(passes.glow(rung, blurs, shares), rung.block, scattered);
 }
 

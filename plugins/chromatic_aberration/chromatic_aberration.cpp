@@ -45,8 +45,10 @@ constexpr double spread = dispersion(blue_peak) - dispersion(red_peak);
 constexpr double red_end = (dispersion(red_peak) - dispersion(green_peak)) / spread;
 constexpr double blue_end = (dispersion(blue_peak) - dispersion(green_peak)) / spread;
 
-/// Samples between green and the far end of that many pixels.
+/// Samples between green and the far end of that many pixels. None where nothing is displaced: a filtered sample at
+/// the pixel's own place is not exactly the pixel.
 int taps(double pixels, const Sampling& sampling) {
+    if (pixels == 0) return 0;
     return static_cast<int>(
         std::clamp(std::ceil(std::abs(pixels) / sampling.spacing), 1.0, double(sampling.most)));
 }
@@ -68,7 +70,7 @@ void declare_classic(const postfx::Request& in, postfx::Builder& out, double sha
 }
 
 void declare_spectrum(const postfx::Request& in, postfx::Builder& out, double share) {
-    const Sampling& sampling = samplings[in.level() - medium];
+    const Sampling& sampling = samplings[std::max(0, in.level() - medium)];
     const double pixels = in.number("strength") * in.height();
     const bool linear = sampling.radius == 1;
     out.compose(linear ? "chromatic_aberration.glsl" : "chromatic_aberration_cubic.glsl")
@@ -81,11 +83,15 @@ void declare_spectrum(const postfx::Request& in, postfx::Builder& out, double sh
 }
 
 void plan(const postfx::Request& in, postfx::Builder& out) {
-    if (in.number("strength") == 0) return out.identity("strength is 0");
+    if (in.number("strength") == 0 && out.identity("strength is 0")) return;
     // From heights in the corner to a share of the radius. The corner is at least half a height away, so no
     // share exceeds 0.1 and the picture can't be turned inside out: the range of `strength` sees to that.
     const double corner = 0.5 * std::hypot(1.0, double(in.width()) / in.height());
     const double share = in.number("strength") / corner;
+    const double farthest =
+        std::abs(in.number("strength")) * in.height() * std::max(std::abs(red_end), std::abs(blue_end));
+    if (farthest < 0.5 && out.not_called_for("visible", "no colour is displaced by half a pixel")) return;
+    if (in.number("strength") == 0) return declare_spectrum(in, out, 0);
     switch (in.level()) {
     case classic:
         return declare_classic(in, out, share);

@@ -79,6 +79,8 @@ constexpr int rows_of_a_pixel = 360;
 constexpr double sharp_diameter = 1;
 /// Of a gathered disc, texels: the texel itself.
 constexpr double smallest_radius = 0.5;
+/// Edge of what is drawn or not as a whole, in tiles: these follow what reaches where, but are too small to draw singly.
+constexpr int tiles_of_a_mask = 4;
 /// Entries of the table of the discs' weights. Between them the sum is off by less than 2e-3.
 constexpr int disc_entries = 256;
 /// Of the layers. Every texel is read up to 137 times, and software rasterisers pay for each conversion from half
@@ -98,6 +100,7 @@ double focus_metres(const postfx::Request& in) {
 }
 
 double aperture_metres(const postfx::Request& in) {
+    if (in.number("f_number") == pinhole) return 0;
     return in.number("focal_length") / 1000 / in.number("f_number");
 }
 
@@ -197,12 +200,21 @@ void declare_gathers(const postfx::Request& in, postfx::Builder& out, const Lens
                                         .reads("foreground", foreground, "nearest")
                                         .reads("background", background, "nearest")
                                         .constant("DEPTH_OF_FIELD_TILE", gather.tile)
-                                        .format("rg32f")
+                                        .format("rgba32f")
                                         .sized(tiles_x, tiles_y);
     const postfx::PlanImage reach = out.pass("reach", "depth_of_field_reach.glsl")
                                         .reads("tiles", tiles, "nearest")
-                                        .format("rg32f")
+                                        .formats({"rg32f", "r8"})
                                         .sized(tiles_x, tiles_y);
+    const auto side = static_cast<std::uint32_t>(gather.tile * tiles_of_a_mask);
+    const postfx::PlanImage blurred = out.pass("mask", "depth_of_field_mask.glsl")
+                                          .reads("reach", reach, "nearest")
+                                          .reads("blurred", reach.output(1), "nearest")
+                                          .constant("DEPTH_OF_FIELD_MASK", tiles_of_a_mask)
+                                          .formats({"r8", "r8"})
+                                          .sized(divide_up(static_cast<int>(tiles_x), tiles_of_a_mask),
+                                                 divide_up(static_cast<int>(tiles_y), tiles_of_a_mask));
+    const postfx::PlanImage covered = blurred.output(1);
     postfx::PlanImage blurred_background =
         out.pass("background", "depth_of_field_background.glsl")
             .reads("layer", background, "nearest")
@@ -213,7 +225,8 @@ void declare_gathers(const postfx::Request& in, postfx::Builder& out, const Lens
             .constant("DEPTH_OF_FIELD_LATTICE", gather.background_lattice)
             .constant("DEPTH_OF_FIELD_AXIAL", axial)
             .format(gathered)
-            .sized(width, height);
+            .sized(width, height)
+            .where(blurred, side);
     postfx::PlanImage blurred_foreground =
         out.pass("foreground", "depth_of_field_foreground.glsl")
             .reads("layer", foreground, "nearest")
@@ -225,13 +238,15 @@ void declare_gathers(const postfx::Request& in, postfx::Builder& out, const Lens
             .constant("DEPTH_OF_FIELD_LATTICE", gather.foreground_lattice)
             .constant("DEPTH_OF_FIELD_AXIAL", axial)
             .format(gathered)
-            .sized(width, height);
+            .sized(width, height)
+            .where(covered, side);
     if (gather.background_lattice > 1) {
         blurred_background = out.pass("fill", "depth_of_field_fill.glsl")
                                  .reads("background", blurred_background, "nearest")
                                  .reads("foreground", blurred_foreground, "nearest")
                                  .formats({gathered, gathered})
-                                 .sized(width, height);
+                                 .sized(width, height)
+                                 .where(blurred, side);
         blurred_foreground = blurred_background.output(1);
     }
     const char* filter = block == 1 ? "nearest" : "linear";
@@ -282,11 +297,42 @@ void declare_passes(const postfx::Request& in, postfx::Builder& out, const Lens&
     }
 }
 
+/// The largest circle is that of the nearest surface, of the farthest, or of the sky: it only grows with the distance
+/// in 1/z from the focus. Asks the frame where the scene's bounds don't tell.
+bool is_sharp_anywhere(const postfx::Request& in, postfx::Builder& out, const Lens& lens) {
+    const postfx_camera& camera = in.camera();
+    const double focus = focus_metres(in), aperture = aperture_metres(in) * in.height();
+    const bool parallel = camera.orthographic != 0;
+    // c = scale * (1 - focus / z), or scale * (z / focus - 1)
+    const double scale =
+        parallel ? aperture / camera.vertical_extent : aperture / (2 * focus * camera.tan_half_fov);
+    const double nearest = std::max(in.scene().nearest, camera.near_plane);
+    const double at_nearest = parallel ? scale * (nearest / focus - 1) : scale * (1 - focus / nearest);
+    const double shift = axial_shift(in, lens.limit).reach();
+    // Rounding in float32 must not lift a circle over the limit that was below it in float64.
+    constexpr double limit = sharp_diameter * 0.9999;
+    const double largest = std::max(std::abs(at_nearest), std::abs(lens.sky)) + shift;
+    if (largest <= limit) {
+        return out.not_called_for("exact", "the largest circle of confusion is " + std::to_string(largest)
+                                               + " pixels, up to 1 counts as sharp");
+    }
+    out.skip_when("exact", "depth_of_field_sharp.glsl", "largest circle of confusion [px]", "sharp up to")
+        .reads("depth", out.attachment("depth"), "nearest")
+        .value("circle", scale, focus, lens.sky, shift)
+        .value("limit", limit)
+        .constant("DEPTH_OF_FIELD_PARALLEL", parallel ? 1 : 0);
+    return false;
+}
+
 void plan(const postfx::Request& in, postfx::Builder& out) {
-    if (in.number("f_number") == pinhole) return out.identity("the f-number is that of a pinhole");
+    const bool shows_picture = in.choice("view") == picture;
+    if (shows_picture && in.number("f_number") == pinhole
+        && out.identity("the f-number is that of a pinhole"))
+        return;
     const double largest_allowed = in.number("max_circle_of_confusion") * in.height();
-    if (largest_allowed <= sharp_diameter) {
-        return out.identity("max_circle_of_confusion is at most one pixel, which counts as sharp");
+    if (shows_picture && largest_allowed <= sharp_diameter
+        && out.identity("max_circle_of_confusion is at most one pixel, which counts as sharp")) {
+        return;
     }
     if (focus_metres(in) <= in.number("focal_length") / 1000) {
         const std::string text = "the focus distance is " + std::to_string(focus_metres(in))
@@ -294,12 +340,9 @@ void plan(const postfx::Request& in, postfx::Builder& out) {
                                  + std::to_string(in.number("focal_length")) + " mm";
         return out.refuse(text.c_str());
     }
-    if (!in.has("depth")) return out.not_called_for("visible", "there is no depth attachment to focus by");
+    if (!in.has("depth")) return out.lacks("there is no depth attachment to focus by");
     Lens lens = in.camera().orthographic ? orthographic_lens(in) : perspective_lens(in);
-    if (lens.limit <= sharp_diameter) {
-        return out.not_called_for(
-            "exact", "from the near plane to the sky every circle of confusion is at most one pixel");
-    }
+    if (shows_picture && is_sharp_anywhere(in, out, lens)) return;
     lens.limit = std::min(lens.limit, largest_allowed);
     lens.sky = std::min(lens.sky, lens.limit);
     declare_passes(in, out, lens);

@@ -1,6 +1,8 @@
 // Fog of constant density, or one that thins out with height. README.md has the model and its limits.
 #include <postfx/plugin.hpp>
 
+#include <cmath>
+
 namespace {
 
 constexpr postfx::Parameter parameters[] = {
@@ -40,10 +42,29 @@ constexpr postfx_level levels[] = {
 constexpr const char* sources[] = {"fog_classic.glsl", "fog_low.glsl", "fog.glsl"};
 constexpr int medium = 2;
 
+/// Of a pixel's ray, in lengths along the view axis.
+double longest_ray(const postfx::Request& in) {
+    const double up = in.camera().tan_half_fov, across = up * in.width() / in.height();
+    return std::sqrt(1 + up * up + across * across);
+}
+
 void plan(const postfx::Request& in, postfx::Builder& out) {
-    if (in.number("density") == 0) return out.identity("density is 0");
-    if (in.number("max_opacity") == 0) return out.identity("max_opacity is 0");
-    if (!in.has("depth")) return out.not_called_for("visible", "there is no depth attachment to fog by");
+    if (in.number("density") == 0 && out.identity("density is 0")) return;
+    if (in.number("max_opacity") == 0 && out.identity("max_opacity is 0")) return;
+    if (!in.has("depth")) return out.lacks("there is no depth attachment to fog by");
+    const double start = in.number("start");
+    const bool covers_sky = in.toggle("sky");
+    if (!covers_sky && in.is_empty("depth") && out.not_called_for("exact", "there is only sky in view"))
+        return;
+    if (!covers_sky && in.scene().reach <= start
+        && out.not_called_for("exact", "all in view is nearer than the start")) {
+        return;
+    }
+    if (!covers_sky && start > 0) {
+        out.skip_when("exact", "fog_nearer.glsl", "farthest surface [m]", "start")
+            .reads("depth", out.attachment("depth"), "nearest")
+            .value("longest_ray", longest_ray(in));
+    }
     out.compose(sources[in.level()])
         .reads("depth", out.attachment("depth"), "nearest")
         .constant("FOG_PARALLEL", in.camera().orthographic ? 1 : 0)

@@ -61,7 +61,7 @@ void declare_classic(const postfx::Request& in, postfx::Builder& out) {
 }
 
 void plan(const postfx::Request& in, postfx::Builder& out) {
-    if (in.number("amount") == 0) return out.identity("amount is 0");
+    if (in.number("amount") == 0 && out.identity("amount is 0")) return;
     if (in.level() == classic) return declare_classic(in, out);
     const double size = in.number("size") * in.height(); // pixels
     // A pixel that holds many grains averages them: deviation times sqrt(area) is constant (Selwyn's law).

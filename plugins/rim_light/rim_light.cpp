@@ -34,9 +34,16 @@ enum Level : int { classic, low, medium };
 /// Narrower rims are as wide as this: no cosine in float32 tells them apart, and a reciprocal stays finite.
 constexpr double least_width = 1e-30;
 
+/// A ramp of no width lights nothing, not even what is seen exactly edge on.
+bool is_rimless(const postfx::Request& in) {
+    const bool is_ramp = in.level() == classic || in.choice("profile") == ramp;
+    return is_ramp && in.number("width") == 0;
+}
+
 void compose(const postfx::Request& in, postfx::Builder& out, postfx::PlanImage normal) {
     const bool is_classic = in.level() == classic;
-    const double width = std::max(in.number("width"), least_width), strength = in.number("strength");
+    const double width = std::max(in.number("width"), least_width);
+    const double strength = is_rimless(in) ? 0 : in.number("strength");
     const double* color = in.color("color");
     out.compose(is_classic ? "rim_light_classic.glsl" : "rim_light.glsl")
         .reads("normal", normal, "nearest")
@@ -48,14 +55,16 @@ void compose(const postfx::Request& in, postfx::Builder& out, postfx::PlanImage 
 
 void plan(const postfx::Request& in, postfx::Builder& out) {
     const double* color = in.color("color");
-    const bool is_ramp = in.level() == classic || in.choice("profile") == ramp;
-    if (in.number("strength") == 0) return out.identity("strength is 0");
-    if (color[0] == 0 && color[1] == 0 && color[2] == 0) return out.identity("color is black");
-    if (is_ramp && in.number("width") == 0) return out.identity("width is 0");
+    if (in.number("strength") == 0 && out.identity("strength is 0")) return;
+    if (color[0] == 0 && color[1] == 0 && color[2] == 0 && out.identity("color is black")) return;
+    if (is_rimless(in) && out.identity("width is 0")) return;
+    if ((in.is_empty("depth") || in.is_empty("normal"))
+        && out.not_called_for("exact", "there is no surface in view")) {
+        return;
+    }
     if (in.has("normal")) return compose(in, out, out.attachment("normal"));
     if (!in.has("depth")) {
-        return out.not_called_for("visible",
-                                  "there is neither a normal nor a depth attachment to find edges by");
+        return out.lacks("there is neither a normal nor a depth attachment to find edges by");
     }
     const postfx::PlanImage rebuilt = out.pass("normal", "rim_light_normal.glsl")
                                           .reads("depth", out.attachment("depth"), "nearest")

@@ -1,6 +1,7 @@
 // Ambient occlusion from depth and normals, by slices of the horizon. README.md has the model and its limits.
 #include <postfx/plugin.hpp>
 
+#include <algorithm>
 #include <cstdint>
 
 namespace {
@@ -49,15 +50,20 @@ constexpr Gather gathers[] = {
 /// Below this the sphere of influence [pixels] lies within a pixel's nearest neighbours.
 constexpr double smallest_radius = 1.3;
 
+/// Texels of the gathered image that are drawn, or not, together. Small tiles follow the skyline better, large ones
+/// are fewer.
+constexpr int tile_side = 32;
+
 std::uint32_t divide_up(int size, int part) {
     return static_cast<std::uint32_t>((size + part - 1) / part);
 }
 
-/// Projected radius [pixels] at the nearest place that the camera sees.
+/// Projected radius [pixels] at the nearest place where there may be a surface.
 double largest_radius(const postfx::Request& in) {
     const postfx_camera& camera = in.camera();
+    const double nearest = std::max(camera.near_plane, in.scene().nearest);
     const double metres_high =
-        camera.orthographic != 0 ? camera.vertical_extent : 2 * camera.tan_half_fov * camera.near_plane;
+        camera.orthographic != 0 ? camera.vertical_extent : 2 * camera.tan_half_fov * nearest;
     return in.number("radius") * in.height() / metres_high;
 }
 
@@ -82,6 +88,12 @@ postfx::PlanImage declare_gather(const postfx::Request& in, postfx::Builder& out
                         .sized(width, height);
     }
     const postfx::PlanImage normals = distances.output(1);
+    const postfx::PlanImage tiles = out.pass("tiles", "ssao_tiles.glsl")
+                                        .reads("distances", distances, "nearest")
+                                        .constant("SSAO_TILE", tile_side)
+                                        .format("r8")
+                                        .sized(divide_up(static_cast<int>(width), tile_side),
+                                               divide_up(static_cast<int>(height), tile_side));
     const postfx::PlanImage gathered = out.pass("gather", "ssao_gather.glsl")
                                            .reads("distances", distances, "nearest")
                                            .reads("normals", normals, "nearest")
@@ -90,14 +102,16 @@ postfx::PlanImage declare_gather(const postfx::Request& in, postfx::Builder& out
                                            .constant("SSAO_STEPS", gather.steps)
                                            .constant("SSAO_INTERLEAVED", gather.interleaved ? 1 : 0)
                                            .format("rg32f")
-                                           .sized(width, height);
+                                           .sized(width, height)
+                                           .where(tiles, tile_side);
     if (!gather.interleaved) return gathered;
     return out.pass("denoise", "ssao_denoise.glsl")
         .reads("occlusion", gathered, "nearest")
         .reads("normals", normals, "nearest")
         .constant("SSAO_BLOCK", gather.block)
         .format("rg32f")
-        .sized(width, height);
+        .sized(width, height)
+        .where(tiles, tile_side);
 }
 
 /// The seed of this effect: its stride is what makes its radius some per cent of the height.
@@ -134,17 +148,25 @@ void declare_passes(const postfx::Request& in, postfx::Builder& out) {
 }
 
 void plan(const postfx::Request& in, postfx::Builder& out) {
-    if (in.number("strength") == 0) return out.identity("strength is 0");
-    if (in.number("radius") == 0) return out.identity("radius is 0");
-    if (!in.has("depth")) return out.not_called_for("visible", "there is no depth attachment");
-    const bool needs_ambient = in.choice("view") == picture && in.choice("without_ambient") == skip;
+    const bool shows_picture = in.choice("view") == picture;
+    if (shows_picture && in.number("strength") == 0 && out.identity("strength is 0")) return;
+    if (shows_picture && in.number("radius") == 0 && out.identity("radius is 0")) return;
+    if (!in.has("depth")) return out.lacks("there is no depth attachment");
+    const bool needs_ambient = shows_picture && in.choice("without_ambient") == skip;
     if (needs_ambient && !in.has("ambient")) {
-        return out.not_called_for("visible",
-                                  "there is no ambient attachment, and only ambient light is occluded "
-                                  "(without_ambient: multiply would darken all light)");
+        return out.lacks("there is no ambient attachment, and only ambient light is occluded "
+                         "(without_ambient: multiply would darken all light)");
     }
-    if (largest_radius(in) < smallest_radius) {
-        return out.not_called_for("visible", "even at the near plane the radius is less than 1.3 pixels");
+    if (shows_picture) {
+        if (in.is_empty("depth") && out.not_called_for("exact", "there is only sky in view")) return;
+        if (needs_ambient && in.is_empty("ambient")
+            && out.not_called_for("exact", "there is no ambient light"))
+            return;
+        if (largest_radius(in) < smallest_radius
+            && out.not_called_for("visible",
+                                  "even at the nearest surface the radius is less than 1.3 pixels")) {
+            return;
+        }
     }
     declare_passes(in, out);
 }

@@ -33,15 +33,16 @@ constexpr postfx_level levels[] = {
 enum LevelIndex { classic, medium };
 
 void plan(const postfx::Request& in, postfx::Builder& out) {
-    if (in.number("strength") == 0) return out.identity("strength is 0");
+    if (in.number("strength") == 0 && out.identity("strength is 0")) return;
     if (in.level() == classic) {
         out.compose("vignette_classic.glsl");
         return;
     }
     const postfx_camera& camera = in.camera();
     const bool natural = in.choice("model") == 0;
-    if (natural && camera.orthographic) {
-        return out.not_called_for("exact", "the natural falloff of a parallel projection is 1 everywhere");
+    if (natural && camera.orthographic
+        && out.not_called_for("exact", "the natural falloff of a parallel projection is 1 everywhere")) {
+        return;
     }
     // What half a pixel is worth. Natural: tangents of angles, of square pixels. Artistic: picture heights;
     // roundness 0 squeezes the width to the height.

@@ -13,7 +13,7 @@ constexpr postfx::Parameter parameters[] = {
 
 // Asked whenever a value or the picture's size changes: says that there is nothing to do, or declares passes.
 void plan(const postfx::Request& in, postfx::Builder& out) {
-    if (in.number("amount") == 0) return out.identity("amount is 0");
+    if (in.number("amount") == 0 && out.identity("amount is 0")) return;
     out.compose("my_effect.glsl");
 }
 

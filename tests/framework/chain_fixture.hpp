@@ -14,7 +14,7 @@ using postfx::Chain;
 using postfx::ChainEntry;
 
 inline void plan_nothing(const postfx::Request&, postfx::Builder& out) {
-    out.identity("it is only declared");
+    out.lacks("it is only declared");
 }
 
 inline constexpr const char* shapes[] = {"round", "square", "hexagon"};

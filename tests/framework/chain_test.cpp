@@ -90,7 +90,7 @@ TEST_CASE("every mistake has its message") {
          R"(c.yaml:1:1: a chain: expected "effects:" and a list, or "include:" and a file, found "blur")"},
         {"efects: []", R"(c.yaml:1:1: a chain has no key "efects"; did you mean "effects"?)"},
         {"effects: []\nplugins: []",
-         R"(c.yaml:2:1: a chain has no key "plugins"; expected one of effects, include, overrides)"},
+         R"(c.yaml:2:1: a chain has no key "plugins"; expected one of effects, include, overrides, skip)"},
         {"effects: blur", R"(c.yaml:1:10: "effects": expected a list of effects, found "blur")"},
         {"effects:\n  blur:\n", R"(c.yaml:2:3: "effects": expected a list of effects, found a map)"},
         {"effects: []\neffects: []", R"(c.yaml:2:1: "effects" is given twice)"},
@@ -214,6 +214,18 @@ TEST_CASE("every mistake has its message") {
     CHECK(parse_error(yaml) == expected);
 }
 
+TEST_CASE("a chain says what may be skipped") {
+    using postfx::Skip;
+    CHECK(parse("effects: [blur]\n").skip == Skip::code);
+    CHECK(parse("skip: nothing\neffects: [blur]\n").skip == Skip::nothing);
+    CHECK(parse("skip: exact\neffects: [blur]\n").skip == Skip::exact);
+    CHECK(parse("effects: [blur]\nskip: visible\n").skip == Skip::visible);
+    CHECK(parse_error("skip: all\neffects: [blur]\n")
+          == "c.yaml:1:7: \"skip\": expected nothing, exact, code or visible, found \"all\"");
+    CHECK(parse_error("skip: [exact]\neffects: [blur]\n")
+          == "c.yaml:1:7: \"skip\": expected nothing, exact, code or visible, found a list");
+}
+
 TEST_CASE("an error knows its place") {
     try {
         parse("effects:\n  - shade: {radius: 2}\n");
@@ -294,7 +306,7 @@ TEST_CASE("the schema says what the reader accepts") {
     const auto schema = nlohmann::json::parse(postfx::chain_schema(catalog()));
     CHECK(schema["$schema"] == "https://json-schema.org/draft/2020-12/schema");
     CHECK(schema["additionalProperties"] == false);
-    CHECK(schema["properties"].size() == 3);
+    CHECK(schema["properties"].size() == 4);
     CHECK(schema["dependentRequired"]["overrides"] == nlohmann::json::array({"include"}));
     CHECK(schema["anyOf"][0]["required"] == nlohmann::json::array({"effects"}));
     CHECK(schema["anyOf"][1]["required"] == nlohmann::json::array({"include"}));

@@ -17,8 +17,9 @@ inline std::filesystem::path fixture(const std::string& name) {
 inline const Catalog& fixtures() {
     static const Catalog catalog = [] {
         Catalog made;
-        for (const char* name : {"blur", "broken_shader", "curve", "faulty", "gauge", "grown", "many", "pack",
-                                 "plain_c", "shift", "sneaky", "split", "spoil", "tint"}) {
+        for (const char* name :
+             {"blur", "broken_shader", "curve", "faulty", "flare", "gauge", "grown", "many", "near", "pack",
+              "plain_c", "shift", "sneaky", "split", "spoil", "spots", "tint"}) {
             made.load(fixture(name));
         }
         return made;

@@ -57,7 +57,7 @@ std::string load_error(const fs::path& module) {
 }
 
 void plan_nothing(const postfx::Request&, postfx::Builder& out) {
-    out.identity("this is a test");
+    out.lacks("this is a test");
 }
 
 postfx::Effect sample(const char* id = "sample") {

@@ -45,6 +45,8 @@ Chain single(const std::string& effect, const Values& values) {
         const std::string parameter = id.substr(0, dot);
         if (parameter == "quality") {
             entry.level = static_cast<int>(value);
+        } else if (parameter == "skip") {
+            chain.skip = static_cast<Skip>(static_cast<int>(value));
         } else if (dot != std::string::npos) {
             const auto index = entry.effect->find_parameter(parameter);
             if (!index) throw Error(fmt::format("{} has no parameter {}", effect, parameter));

@@ -23,7 +23,7 @@ struct Input {
 };
 
 /// Parameter values by id; a choice by its index. What is not named has its default. "quality" is the level's
-/// index.
+/// index, "skip" the chain's Skip as a number.
 using Values = std::map<std::string, double>;
 
 /// Is there a GL 4.5 context on this machine? If not, `why` says what was found; GL tests then print it and
@@ -53,6 +53,8 @@ public:
     /// Upload the input and draw the prepared plan, whose size and attachments it must have. Throws Error, also when
     /// OpenGL complained.
     Image draw(const Input& input);
+    /// What the last draw() did.
+    Report report() const { return executor_.report(); }
 
 private:
     Plan plan_;

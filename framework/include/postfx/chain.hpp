@@ -5,7 +5,9 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace postfx {
@@ -25,8 +27,20 @@ struct ChainEntry {
     bool set(std::string_view parameter, double value);
 };
 
+/// Which work may be left out when it is not called for: up to what it would change in the picture.
+enum class Skip {
+    nothing, ///< all that is enabled runs, to prove that skipping is harmless
+    exact,   ///< no bit
+    code,    ///< at most one 8-bit code
+    visible, ///< what by convention is not seen
+};
+std::string_view skip_word(Skip skip);
+/// By its word. Nothing when there is none.
+std::optional<Skip> skip_by_word(std::string_view word);
+
 struct Chain {
     std::vector<ChainEntry> entries;
+    Skip skip = Skip::code;
 
     /// Append an effect with its defaults. Throws Error when the catalog has none of that id.
     ChainEntry& add(const Catalog& catalog, std::string_view effect_id);
@@ -42,6 +56,7 @@ inline constexpr std::size_t max_chain_entries = 256;
 ///     include: default.yaml      # another chain, beside this file or in an include directory; its effects come first
 ///     overrides:                 # by entry name: values, enabled and quality of included effects
 ///       dust: {amount: 0}
+///     skip: code                 # nothing, exact, code or visible: see Skip; the included chain's unless given
 ///     effects:                   # optional when include is there
 ///       - shade                  # with its defaults
 ///       - blur: {radius: 0.2, quality: high, enabled: true, name: haze}

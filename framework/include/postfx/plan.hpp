@@ -7,6 +7,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <string>
 #include <vector>
@@ -19,11 +20,23 @@ enum class Output {
     display, ///< rgba8: sRGB encoded, dithered
 };
 
+/// Bounds that hold for every pixel of the scene, known without looking at one.
+struct SceneBounds {
+    double nearest = 0, farthest = infinity; ///< of any surface: metres along the view axis
+    double reach = infinity;                 ///< metres from the eye to the farthest surface along its ray
+    double lowest = -infinity, highest = infinity; ///< of any surface: metres in the world
+    /// Attachments that are zero in every pixel; "depth": nothing but sky.
+    std::vector<std::string> empty;
+
+    static constexpr double infinity = std::numeric_limits<double>::infinity();
+};
+
 /// What the host knows before any pixel is drawn.
 struct Facts {
     int width = 0, height = 0; ///< pixels
     Camera camera;
     std::vector<std::string> attachments = {"color"}; ///< what can be provided, in any order
+    SceneBounds scene;
     Format working_format = Format::rgba16f;
     Output output = Output::display;
     bool color_is_8bit =
@@ -48,12 +61,16 @@ struct Target {
     std::size_t bytes() const;
 };
 
-/// A whole fragment shader with the files that its `#line` numbers refer to. Shared by plans; `key` names its
+/// What a program's shader runs on: every pixel of the target, those of listed tiles, or threads.
+enum class ProgramKind { full_screen, tiles, compute };
+
+/// A whole shader with the files that its `#line` numbers refer to. Shared by plans; `key` names its
 /// text.
 struct ProgramSource {
     std::string text;
     std::vector<std::string> files; ///< by source-string number
-    std::uint64_t key = 0;          ///< hash of text
+    ProgramKind kind = ProgramKind::full_screen;
+    std::uint64_t key = 0; ///< hash of text
 };
 
 struct PassInput {
@@ -62,12 +79,33 @@ struct PassInput {
     bool linear = false;
 };
 
+/// When a pass is drawn, by the plan's decisions: if all of `live` are for their effects and all of `dead` against
+/// (bits by index into Plan::decisions).
+struct Term {
+    std::uint32_t live = 0, dead = 0;
+    bool operator==(const Term&) const = default;
+};
+/// If any of them holds; always if there are none.
+using Condition = std::vector<Term>;
+
+enum class PassKind {
+    draw,
+    census, ///< of input 0, into the slot of censuses
+    decide, ///< of the decision in `slot`
+};
+
 struct Pass {
+    PassKind kind = PassKind::draw;
+    int slot = -1;             ///< of a census or decision
+    std::vector<int> censuses; ///< slots that a decision reads
+    Condition condition;
     std::string name;                 ///< "glow/down", "shade+tint+output"
     std::vector<std::string> effects; ///< chain entry names whose code is in it
     std::shared_ptr<const ProgramSource> program;
     std::vector<PassInput> inputs; ///< texture unit = index
     std::vector<ImageRef> outputs; ///< all targets of one size
+    ImageRef where;                ///< tile mask; none = drawn everywhere
+    int tiles_across = 0, tiles_down = 0, tile_side = 0;
     int width = 0, height = 0;
     Format format = Format::rgba16f;      ///< of the first output
     std::vector<std::byte> uniform_block; ///< std140 bytes for binding 1; empty when they are compiled in
@@ -81,11 +119,21 @@ struct PlannedEffect {
     std::string name; ///< chain entry
     std::string id;   ///< effect
     EffectStatus status = EffectStatus::ran;
-    std::string moment; ///< when skipped: "configuration" or "scene"
-    std::string kind;   ///< when skipped: "exact", "code", "visible"
+    std::string moment; ///< when skipped: "configuration", "scene" or "frame"
+    std::string kind;   ///< when skipped: "exact", "code", "visible"; "lacks" when something is missing
     std::string
         reason; ///< when skipped: why. Otherwise: with what it was fused, or why not with its neighbour
+    int decision = -1; ///< into Plan::decisions, when the frame decides
 };
+
+/// A question to the frame: its effect is skipped where the first number found is at most the second.
+struct Decision {
+    std::string kind;            ///< of the skip: "exact", "code", "visible"
+    std::string compared, limit; ///< names of the numbers
+};
+
+/// At most, of one plan: bits of Term.
+inline constexpr std::size_t max_decisions = 32;
 
 struct Plan {
     int width = 0, height = 0;
@@ -93,7 +141,10 @@ struct Plan {
     std::vector<std::string> attachments; ///< those that some pass reads; the host need not render others
     std::vector<Target> targets;
     std::vector<Pass> passes;
-    ImageRef picture; ///< the result: the last pass's target, or an attachment when nothing is left to do
+    std::vector<Decision> decisions;
+    int censuses = 0; ///< slots
+    /// The result: the last pass's target, or an attachment when nothing is left to do.
+    ImageRef picture;
     std::vector<std::string> warnings;
 
     std::size_t texture_bytes() const;

@@ -74,6 +74,19 @@ typedef struct postfx_camera {
     double focus_distance;                       /* metres along the view axis; 0 = not known */
 } postfx_camera;
 
+/* What the host knows of the scene without looking at pixels: bounds that hold for every pixel. */
+typedef struct postfx_scene {
+    uint32_t struct_size;
+    uint32_t reserved;
+    double nearest, farthest; /* metres along the view axis, of any surface; not known: 0 and infinity */
+    double reach;             /* metres from the eye to the farthest surface along its ray; infinity: not known */
+    double lowest, highest;   /* metres in the world, of any surface; not known: -infinity and infinity */
+    /* Attachments that are zero in every pixel (no emitter, no ambient light); "depth": nothing but sky. */
+    const char* const* empty;
+    uint32_t empty_count;
+    uint32_t reserved2;
+} postfx_scene;
+
 struct postfx_effect;
 
 /* What the host knows when it asks for a plan. Valid during the call. */
@@ -87,6 +100,7 @@ typedef struct postfx_request {
     const char* const* attachments; /* what the host can provide: "color", "depth", ... */
     uint32_t attachment_count;
     uint32_t reserved;
+    const postfx_scene* scene;
 } postfx_request;
 
 typedef uint32_t postfx_image; /* an image of the plan being made; 0 = none */
@@ -123,8 +137,31 @@ typedef struct postfx_pass {
     const char* const* formats; /* one per output: "rgba16f", ...; "" = the chain's working format */
     uint32_t output_count;
     uint32_t width, height; /* of every output, pixels, at least 1 */
+    /* Not 0: the pass is drawn in tiles whose texel of this image is not 0 in its first channel. Others may be drawn
+       too; where not, its outputs are 0. Which it is must make no difference, to the bit, to what the effect gives. A
+       texel stands for tile_side x tile_side pixels of the pass; 32 is a good side. Not for "compose". */
+    postfx_image where;
+    uint32_t tile_side;
     uint32_t reserved2;
 } postfx_pass;
+
+/* A question that only the frame can answer. Its source has a function of what was found in every pixel of the
+   inputs: vec2 name(Census first, ..., NameParams params), a DepthCensus for the depth attachment
+   (shaders/postfx/census.glsl). The effect is skipped in frames where .x <= .y. */
+typedef struct postfx_decision {
+    uint32_t struct_size;
+    uint32_t reserved;
+    const char* kind;   /* of the skip: "exact", "code" or "visible" */
+    const char* source; /* a postfx_source of this module */
+    const postfx_input* inputs;
+    uint32_t input_count, input_stride;
+    const postfx_number* values;
+    uint32_t value_count, value_stride;
+    const postfx_number* constants;
+    uint32_t constant_count, constant_stride;
+    const char* compared; /* what .x is, for reports: "brightest light" */
+    const char* limit;    /* what .y is: "threshold" */
+} postfx_decision;
 
 /* Given to plan(). Image handles live until plan() returns. */
 typedef struct postfx_builder {
@@ -132,8 +169,11 @@ typedef struct postfx_builder {
     uint32_t reserved;
     void* context;
     /* The effect changes nothing now. moment: "configuration" or "scene". kind: "exact" (E0), "code" (E1: at
-       most one 8-bit code), "visible" (E2). Call this INSTEAD of declaring passes. */
-    void (*identity)(void* context, const char* moment, const char* kind, const char* reason);
+       most one 8-bit code), "visible" (E2). Non-zero: the effect is skipped, declare nothing. 0: the chain does not
+       allow skips of this kind (none at all when everything is to run); go on and declare the passes. */
+    int32_t (*identity)(void* context, const char* moment, const char* kind, const char* reason);
+    /* The effect can't do anything here, because something is missing. Declare nothing. */
+    void (*lacks)(void* context, const char* reason);
     /* These values can't be used together; the chain is refused with this message. */
     void (*refuse)(void* context, const char* message);
     /* The stored picture as it reaches this effect. */
@@ -143,6 +183,8 @@ typedef struct postfx_builder {
     /* Declare a pass. Returns the image of its first output (the others follow consecutively); 0 for
      * "compose". */
     postfx_image (*pass)(void* context, const postfx_pass* pass);
+    /* At most once, before any pass. Its inputs are color() and attachments. */
+    void (*decide)(void* context, const postfx_decision* decision);
     /* Size of an image of this plan, pixels. */
     void (*size)(void* context, postfx_image image, uint32_t* width, uint32_t* height);
 } postfx_builder;

@@ -4,7 +4,7 @@
 //         postfx::number("strength", 0.4).range(0, 1).identity_at(0).about("How dark the corners get"),
 //     };
 //     static void plan(const postfx::Request& in, postfx::Builder& out) {
-//         if (in.number("strength") == 0) return out.identity("strength is 0");
+//         if (in.number("strength") == 0 && out.identity("strength is 0")) return;
 //         out.compose("shade.glsl");
 //     }
 //     static constexpr auto shade =
@@ -15,6 +15,7 @@
 //     compose    vec3 shade(vec3 color, Pixel pixel, ShadeParams params [, sampler2D for each reads()])
 //     fragment   vec4 blur_down(Pixel pixel, BlurDownParams params [, sampler2D ...])
 //     several    void blur_down(Pixel pixel, BlurDownParams params [, sampler2D ...], out vec4 a, out vec4 b)
+//     decision   vec2 shade_unlit(Census picture, ShadeUnlitParams params)
 // The struct's members are the effect's dynamic parameters, then the numbers given by value() in their order.
 // Constant parameters and constant()s are GLSL constants in capitals: parameter `model` of effect `shade` is
 // SHADE_MODEL.
@@ -147,10 +148,13 @@ public:
     int level() const { return static_cast<int>(request_.level); }
     const postfx_camera& camera() const { return *request_.camera; }
     bool has(const char* attachment) const {
-        for (std::uint32_t i = 0; i < request_.attachment_count; ++i) {
-            if (std::strcmp(request_.attachments[i], attachment) == 0) return true;
-        }
-        return false;
+        return is_among(request_.attachments, request_.attachment_count, attachment);
+    }
+    /// Bounds of the scene that the host knows without looking at pixels.
+    const postfx_scene& scene() const { return *request_.scene; }
+    /// Is the attachment known to be zero in every pixel ("depth": nothing but sky)?
+    bool is_empty(const char* attachment) const {
+        return is_among(scene().empty, scene().empty_count, attachment);
     }
 
 private:
@@ -160,6 +164,13 @@ private:
         const char* what() const noexcept override { return text.c_str(); }
         std::string text;
     };
+
+    static bool is_among(const char* const* words, std::uint32_t count, const char* word) {
+        for (std::uint32_t i = 0; i < count; ++i) {
+            if (std::strcmp(words[i], word) == 0) return true;
+        }
+        return false;
+    }
 
     const double* values(const char* id) const {
         const auto* first = reinterpret_cast<const char*>(request_.effect->parameters);
@@ -182,13 +193,96 @@ struct PlanImage {
     PlanImage output(std::uint32_t n) const { return {handle + n}; }
 };
 
+/// What passes and decisions have in common: images that are read, and numbers. `Self` is what calls return.
+template<class Self>
+class Declaration {
+public:
+    Declaration(const Declaration&) = delete;
+    Declaration& operator=(const Declaration&) = delete;
+
+    /// Bind `image` to the function's next sampler (decisions: census) argument. filter: "nearest" or "linear";
+    /// edges are clamped.
+    Self& reads(const char* name, PlanImage image, const char* filter = "linear") {
+        if (input_count_ == max_inputs) return overflow("inputs");
+        inputs_[input_count_++] = {sizeof(postfx_input), image.handle, name, filter};
+        return self();
+    }
+    /// A number computed here: member `name` of the function's parameter struct.
+    Self& value(const char* name, double x) { return add_number(values_, value_count_, name, "float", {x}); }
+    Self& value(const char* name, double x, double y) {
+        return add_number(values_, value_count_, name, "float", {x, y});
+    }
+    Self& value(const char* name, double x, double y, double z) {
+        return add_number(values_, value_count_, name, "float", {x, y, z});
+    }
+    Self& value(const char* name, double x, double y, double z, double w) {
+        return add_number(values_, value_count_, name, "float", {x, y, z, w});
+    }
+    Self& int_value(const char* name, int x) {
+        return add_number(values_, value_count_, name, "int", {double(x)});
+    }
+    /// A number compiled in: GLSL `const int NAME` / `const float NAME`. Write NAME in capitals, with the
+    /// effect's prefix.
+    Self& constant(const char* name, int x) {
+        return add_number(constants_, constant_count_, name, "int", {double(x)});
+    }
+    Self& constant(const char* name, double x) {
+        return add_number(constants_, constant_count_, name, "float", {x});
+    }
+
+protected:
+    Declaration(const postfx_builder& builder, const char* name) : builder_(builder), name_(name) {}
+    ~Declaration() = default;
+
+    Self& overflow(const char* what) {
+        builder_.refuse(builder_.context, (std::string(name_) + " declares too many " + what).c_str());
+        return self();
+    }
+    /// Put what was declared into `abi`, a postfx_pass or postfx_decision.
+    template<class Abi>
+    void fill(Abi& abi) const {
+        abi.inputs = inputs_;
+        abi.input_count = input_count_;
+        abi.input_stride = sizeof(postfx_input);
+        abi.values = values_;
+        abi.value_count = value_count_;
+        abi.value_stride = sizeof(postfx_number);
+        abi.constants = constants_;
+        abi.constant_count = constant_count_;
+        abi.constant_stride = sizeof(postfx_number);
+    }
+
+    const postfx_builder& builder_;
+
+private:
+    static constexpr std::uint32_t max_inputs = 12, max_numbers = 32;
+
+    Self& self() { return static_cast<Self&>(*this); }
+    Self& add_number(postfx_number* list, std::uint32_t& count, const char* name, const char* kind,
+                     std::initializer_list<double> components) {
+        if (count == max_numbers) return overflow("numbers");
+        postfx_number& added = list[count++];
+        added = {sizeof(postfx_number), static_cast<std::uint32_t>(components.size()), name, kind, {}};
+        std::size_t i = 0;
+        for (double component : components)
+            added.value[i++] = component;
+        return self();
+    }
+
+    const char* name_;
+    postfx_input inputs_[max_inputs];
+    postfx_number values_[max_numbers];
+    postfx_number constants_[max_numbers];
+    std::uint32_t input_count_ = 0, value_count_ = 0, constant_count_ = 0;
+};
+
 /// One pass as it is declared (plan.hpp has the host's Pass). It is handed to the host when it is converted
 /// to a PlanImage or goes out of scope, whichever comes first; so write it as one expression.
-class PassDeclaration {
+class PassDeclaration : public Declaration<PassDeclaration> {
 public:
     PassDeclaration(const postfx_builder& builder, const char* kind, const char* name, const char* source,
                     std::uint32_t width, std::uint32_t height)
-        : builder_(builder) {
+        : Declaration(builder, name) {
         pass_.struct_size = sizeof(postfx_pass);
         pass_.kind = kind;
         pass_.name = name;
@@ -197,41 +291,8 @@ public:
         pass_.height = height;
         pass_.output_count = 1;
     }
-    PassDeclaration(const PassDeclaration&) = delete;
-    PassDeclaration& operator=(const PassDeclaration&) = delete;
     ~PassDeclaration() { commit(); }
 
-    /// Bind `image` to the function's next sampler argument. filter: "nearest" or "linear"; edges are
-    /// clamped.
-    PassDeclaration& reads(const char* name, PlanImage image, const char* filter = "linear") {
-        if (pass_.input_count == max_inputs) return overflow("inputs");
-        inputs_[pass_.input_count++] = {sizeof(postfx_input), image.handle, name, filter};
-        return *this;
-    }
-    /// A number computed here: member `name` of the pass's parameter struct.
-    PassDeclaration& value(const char* name, double x) {
-        return add_number(values_, pass_.value_count, name, "float", {x});
-    }
-    PassDeclaration& value(const char* name, double x, double y) {
-        return add_number(values_, pass_.value_count, name, "float", {x, y});
-    }
-    PassDeclaration& value(const char* name, double x, double y, double z) {
-        return add_number(values_, pass_.value_count, name, "float", {x, y, z});
-    }
-    PassDeclaration& value(const char* name, double x, double y, double z, double w) {
-        return add_number(values_, pass_.value_count, name, "float", {x, y, z, w});
-    }
-    PassDeclaration& int_value(const char* name, int x) {
-        return add_number(values_, pass_.value_count, name, "int", {double(x)});
-    }
-    /// A number compiled in: GLSL `const int NAME` / `const float NAME`. Write NAME in capitals, with the
-    /// effect's prefix.
-    PassDeclaration& constant(const char* name, int x) {
-        return add_number(constants_, pass_.constant_count, name, "int", {double(x)});
-    }
-    PassDeclaration& constant(const char* name, double x) {
-        return add_number(constants_, pass_.constant_count, name, "float", {x});
-    }
     /// Size relative to the picture, rounded up, at least 1x1.
     PassDeclaration& scale(double factor) {
         return sized(scaled(pass_.width, factor), scaled(pass_.height, factor));
@@ -258,52 +319,58 @@ public:
         return *this;
     }
     PassDeclaration& format(const char* word) { return formats({word}); }
+    /// Draw the tiles whose texel of `mask` is not 0 in its first channel, of tile_side x tile_side pixels of this
+    /// pass; 32 is a good side. Others may be drawn too; where not, the outputs are 0. Which it is must make no
+    /// difference to what the effect gives.
+    PassDeclaration& where(PlanImage mask, std::uint32_t tile_side) {
+        pass_.where = mask.handle;
+        pass_.tile_side = tile_side;
+        return *this;
+    }
 
     operator PlanImage() { return {commit()}; }
 
 private:
-    static constexpr std::uint32_t max_inputs = 12, max_numbers = 32, max_outputs = 4;
+    static constexpr std::uint32_t max_outputs = 4;
 
     static std::uint32_t scaled(std::uint32_t size, double factor) {
         return static_cast<std::uint32_t>(std::fmax(1.0, std::ceil(size * factor)));
     }
-    PassDeclaration& overflow(const char* what) {
-        builder_.refuse(builder_.context, (std::string(pass_.name) + " declares too many " + what).c_str());
-        return *this;
-    }
-    PassDeclaration& add_number(postfx_number* list, std::uint32_t& count, const char* name, const char* kind,
-                                std::initializer_list<double> components) {
-        if (count == max_numbers) return overflow("numbers");
-        postfx_number& added = list[count++];
-        added = {sizeof(postfx_number), static_cast<std::uint32_t>(components.size()), name, kind, {}};
-        std::size_t i = 0;
-        for (double component : components)
-            added.value[i++] = component;
-        return *this;
-    }
     postfx_image commit() {
         if (!committed_) {
             committed_ = true;
-            pass_.inputs = inputs_;
-            pass_.input_stride = sizeof(postfx_input);
-            pass_.values = values_;
-            pass_.value_stride = sizeof(postfx_number);
-            pass_.constants = constants_;
-            pass_.constant_stride = sizeof(postfx_number);
+            fill(pass_);
             pass_.formats = formats_;
             made_ = builder_.pass(builder_.context, &pass_);
         }
         return made_;
     }
 
-    const postfx_builder& builder_;
     postfx_pass pass_{};
-    postfx_input inputs_[max_inputs];
-    postfx_number values_[max_numbers];
-    postfx_number constants_[max_numbers];
     const char* formats_[max_outputs] = {"", "", "", ""};
     bool committed_ = false;
     postfx_image made_ = 0;
+};
+
+/// A question to the frame, handed to the host when it goes out of scope.
+class DecisionDeclaration : public Declaration<DecisionDeclaration> {
+public:
+    DecisionDeclaration(const postfx_builder& builder, const char* kind, const char* source,
+                        const char* compared, const char* limit)
+        : Declaration(builder, source) {
+        decision_.struct_size = sizeof(postfx_decision);
+        decision_.kind = kind;
+        decision_.source = source;
+        decision_.compared = compared;
+        decision_.limit = limit;
+    }
+    ~DecisionDeclaration() {
+        fill(decision_);
+        builder_.decide(builder_.context, &decision_);
+    }
+
+private:
+    postfx_decision decision_{};
 };
 
 /// What the effect answers: identity(), or passes and one compose().
@@ -312,13 +379,24 @@ public:
     Builder(const postfx_builder& builder, const postfx_request& request)
         : builder_(builder), request_(request) {}
 
-    /// These values make the effect change nothing, bit for bit.
-    void identity(const char* reason) {
-        builder_.identity(builder_.context, "configuration", "exact", reason);
+    /// These values make the effect change nothing, bit for bit. True: it is skipped, so return. False: the chain
+    /// is to run all the same, to prove just that; go on.
+    [[nodiscard]] bool identity(const char* reason) {
+        return builder_.identity(builder_.context, "configuration", "exact", reason) != 0;
     }
-    /// The scene does not call for the effect. kind: "exact", "code" (at most one 8-bit code) or "visible".
-    void not_called_for(const char* kind, const char* reason) {
-        builder_.identity(builder_.context, "scene", kind, reason);
+    /// The scene does not call for the effect. kind: "exact", "code" (at most one 8-bit code) or "visible". True: it
+    /// is skipped, so return. False: the chain does not allow skips of this kind.
+    [[nodiscard]] bool not_called_for(const char* kind, const std::string& reason) {
+        return builder_.identity(builder_.context, "scene", kind, reason.c_str()) != 0;
+    }
+    /// Something is missing without which the effect can't do anything; return after it.
+    void lacks(const char* reason) { builder_.lacks(builder_.context, reason); }
+    /// Let the frame decide: `source` has vec2 f(Census of each reads(), params); the effect is skipped in frames
+    /// where the first number is not above the second. `compared` and `limit` name them. At most once, before the
+    /// passes.
+    DecisionDeclaration skip_when(const char* kind, const char* source, const char* compared,
+                                  const char* limit) {
+        return {builder_, kind, source, compared, limit};
     }
     /// These values can't be used together; `message` says why and what would do.
     void refuse(const char* message) { builder_.refuse(builder_.context, message); }

@@ -18,6 +18,10 @@ struct PassReport {
     std::optional<double> cpu_ms;   ///< CPU time of all threads, profile mode
     std::optional<double> wall_ms;  ///< profile mode
     std::optional<double> gpu_ms;   ///< GL timestamps
+    std::string condition;          ///< on which of the frame's decisions it depends; "" = none
+    std::optional<bool> drawn;      ///< how they fell; absent: not known
+    int tiles = 0;                  ///< that it may be drawn in; 0: it is not drawn in tiles
+    std::optional<int> tiles_drawn; ///< of them; absent: not known
 };
 
 /// An image with pixels that are no numbers (NaN or infinite).
@@ -40,8 +44,8 @@ struct Report {
 /// The plan's part of a report: everything but times.
 Report describe(const Plan& plan);
 
-/// {"effects": [{"id", "name", "status", "moment", "reason"}], "passes": [{"name", "effects", "width",
-/// "height", "format", "reads", "cpu_ms", "gpu_ms"}], "clock", "texture_bytes", "warnings", "nonfinite": [{"name", "pixels", "x", "y",
+/// {"effects": [{"id", "name", "status", "moment", "kind", "reason"}], "passes": [{"name", "effects", "width",
+/// "height", "format", "reads", "condition", "drawn", "tiles", "tiles_drawn", "cpu_ms", "wall_ms", "gpu_ms"}], "clock", "texture_bytes", "warnings", "nonfinite": [{"name", "pixels", "x", "y",
 /// "made_here"}]}; what was not measured or watched is null.
 std::string report_json(const Report& report);
 /// The same for people.

@@ -5,16 +5,29 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace postfx {
 namespace {
+
+constexpr std::array<std::string_view, 4> skip_words = {"nothing", "exact", "code", "visible"};
 
 bool is_stepped(ParameterKind kind) {
     return kind == ParameterKind::integer || kind == ParameterKind::toggle || kind == ParameterKind::choice;
 }
 
 } // namespace
+
+std::string_view skip_word(Skip skip) {
+    return skip_words[static_cast<std::size_t>(skip)];
+}
+
+std::optional<Skip> skip_by_word(std::string_view word) {
+    const auto found = std::find(skip_words.begin(), skip_words.end(), word);
+    if (found == skip_words.end()) return std::nullopt;
+    return static_cast<Skip>(found - skip_words.begin());
+}
 
 bool ChainEntry::set(std::string_view parameter, double value) {
     const auto index = effect->find_parameter(parameter);

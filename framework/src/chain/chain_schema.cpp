@@ -135,6 +135,13 @@ std::string chain_schema(const Catalog& catalog) {
          {{"description", "Changed settings of included effects, by entry name"},
           {"type", {"object", "null"}},
           {"additionalProperties", override_schema(catalog)}}},
+        {"skip",
+         {{"description",
+           "Work that is not called for is left out if that changes: nothing (all runs), exact (no "
+           "bit), code (at most one 8-bit code), visible (what by convention is not seen)"},
+          {"type", "string"},
+          {"enum", {"nothing", "exact", "code", "visible"}},
+          {"default", skip_word(Chain{}.skip)}}},
         {"effects",
          {{"description", "The effects in the order in which they are applied"},
           {"type", {"array", "null"}},

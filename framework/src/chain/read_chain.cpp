@@ -147,15 +147,21 @@ void read_override(const YamlMember& change, Chain& chain) {
     }
 }
 
-/// The three keys of a chain file; null where the file does not have one.
+Skip read_skip(const YamlNode& node) {
+    if (const auto skip = node.is(Kind::scalar) ? skip_by_word(node.text) : std::nullopt) return *skip;
+    refuse(node, "\"skip\"", "nothing, exact, code or visible");
+}
+
+/// The keys of a chain file; null where the file does not have one.
 struct Sections {
     const YamlNode* include = nullptr;
     const YamlNode* overrides = nullptr;
     const YamlNode* effects = nullptr;
+    const YamlNode* skip = nullptr;
 };
 
 Sections split(const YamlNode& root) {
-    const std::vector<std::string> known = {"effects", "include", "overrides"};
+    const std::vector<std::string> known = {"effects", "include", "overrides", "skip"};
     if (root.is(Kind::nothing))
         throw Error(root.place, "the chain is empty; expected \"effects\" or \"include\"");
     if (!root.is(Kind::map)) refuse(root, "a chain", "\"effects:\" and a list, or \"include:\" and a file");
@@ -169,6 +175,8 @@ Sections split(const YamlNode& root) {
             overrides_key = &key;
         } else if (key.text == "effects") {
             sections.effects = &value;
+        } else if (key.text == "skip") {
+            sections.skip = &value;
         } else {
             throw Error(key.place, fmt::format("a chain has no key {}{}", quote(key.text),
                                                nearest_or_all(key.text, known)));
@@ -200,6 +208,7 @@ public:
             for (const YamlMember& change : sections.overrides->members)
                 read_override(change, chain);
         }
+        if (sections.skip != nullptr) chain.skip = read_skip(*sections.skip);
         if (sections.effects != nullptr) {
             expect(*sections.effects, Kind::list, "\"effects\"", "a list of effects");
             for (const YamlNode& item : sections.effects->items)

@@ -1,8 +1,11 @@
+#include <execute/frame_decisions.hpp>
 #include <execute/nonfinite_watch.hpp>
 #include <execute/program_cache.hpp>
+#include <execute/tile_passes.hpp>
 #include <gl/clock.hpp>
 #include <gl/context.hpp>
 #include <gl/objects.hpp>
+#include <plan/condition.hpp>
 #include <plan/frame_block.hpp>
 
 #include <postfx/error.hpp>
@@ -56,6 +59,8 @@ struct Executor::State {
         Plan plan;
         std::vector<TexturePtr> targets; ///< shared with the plan before while that is being replaced
         std::vector<ReadyPass> passes;
+        std::optional<FrameDecisions> decisions; ///< if the plan has any
+        std::optional<TilePasses> tiles;         ///< likewise
     };
 
     explicit State(std::filesystem::path cache)
@@ -68,11 +73,19 @@ struct Executor::State {
                                                         : ready.targets[image.index]->name();
     }
 
-    void draw(const ReadyPass& ready_pass, const Pass& pass,
-              const std::vector<std::uint32_t>& attachments) const {
+    void execute(std::size_t index, const std::vector<std::uint32_t>& attachments) const {
+        const ReadyPass& ready_pass = current.passes[index];
+        const Pass& pass = current.plan.passes[index];
         const gl::DebugGroup group(ready_pass.name.c_str());
-        glBindFramebuffer(GL_DRAW_FRAMEBUFFER, ready_pass.framebuffer.name());
-        glViewport(0, 0, pass.width, pass.height);
+        const bool tiled = pass.where.kind != ImageRef::Kind::none;
+        if (tiled) {
+            current.tiles->list(index, texture(current, pass.where, attachments),
+                                current.decisions ? current.decisions->command(index) : std::nullopt);
+        }
+        if (pass.kind == PassKind::draw) {
+            glBindFramebuffer(GL_DRAW_FRAMEBUFFER, ready_pass.framebuffer.name());
+            glViewport(0, 0, pass.width, pass.height);
+        }
         glUseProgram(ready_pass.program);
         if (ready_pass.block) glBindBufferBase(GL_UNIFORM_BUFFER, 1, ready_pass.block.name());
         for (std::size_t unit = 0; unit < pass.inputs.size(); ++unit) {
@@ -80,7 +93,13 @@ struct Executor::State {
             glBindTextureUnit(static_cast<GLuint>(unit), texture(current, input.image, attachments));
             glBindSampler(static_cast<GLuint>(unit), (input.linear ? linear : nearest).name());
         }
-        glDrawArrays(GL_TRIANGLES, 0, 3);
+        if (tiled) {
+            current.tiles->draw(pass, index, ready_pass.program);
+        } else if (current.decisions) {
+            current.decisions->execute(pass, index);
+        } else {
+            glDrawArrays(GL_TRIANGLES, 0, 3);
+        }
     }
 
     ProgramCache programs;
@@ -100,6 +119,29 @@ struct Executor::State {
 
 namespace {
 
+/// What the frame decided, in the report's own words; passes that were not drawn leave it.
+void tell_decisions(const FrameDecisions::Outcome& outcome, const Plan& plan, Report& report) {
+    for (PlannedEffect& effect : report.effects) {
+        if (effect.decision < 0) continue;
+        const Decision& decision = plan.decisions[effect.decision];
+        const auto [compared, limit] = outcome.compared[effect.decision];
+        const bool live = (outcome.live >> effect.decision & 1u) != 0;
+        const std::string numbers = fmt::format("{} {:.4g} {} {} {:.4g}", decision.compared, compared,
+                                                live ? "is above" : "<=", decision.limit, limit);
+        if (live) {
+            effect.reason =
+                fmt::format("{}; frame: {}", plan.effects[&effect - report.effects.data()].reason, numbers);
+        } else {
+            effect.status = EffectStatus::skipped;
+            effect.moment = "frame";
+            effect.kind = decision.kind;
+            effect.reason = numbers;
+        }
+    }
+    for (std::size_t i = 0; i < report.passes.size(); ++i)
+        report.passes[i].drawn = holds(plan.passes[i].condition, outcome.live);
+}
+
 /// Take from `old` a texture of that size and format, or make one.
 TexturePtr reuse_or_make(std::vector<TexturePtr>& old, const Target& target) {
     const auto found = std::find_if(old.begin(), old.end(), [&](const TexturePtr& texture) {
@@ -110,6 +152,11 @@ TexturePtr reuse_or_make(std::vector<TexturePtr>& old, const Target& target) {
                               : std::make_shared<gl::Texture>(target.width, target.height, target.format);
 }
 
+bool has_tiles(const Plan& plan) {
+    return std::any_of(plan.passes.begin(), plan.passes.end(),
+                       [](const Pass& pass) { return pass.where.kind != ImageRef::Kind::none; });
+}
+
 /// Same passes into the same targets: only numbers in the uniform blocks may differ.
 bool same_structure(const Plan& a, const Plan& b) {
     const auto same_target = [](const Target& x, const Target& y) {
@@ -117,7 +164,7 @@ bool same_structure(const Plan& a, const Plan& b) {
     };
     const auto same_pass = [](const Pass& x, const Pass& y) {
         return x.program->key == y.program->key && x.outputs == y.outputs && x.name == y.name
-               && x.uniform_block.size() == y.uniform_block.size();
+               && x.uniform_block.size() == y.uniform_block.size() && x.condition == y.condition;
     };
     return std::equal(a.targets.begin(), a.targets.end(), b.targets.begin(), b.targets.end(), same_target)
            && std::equal(a.passes.begin(), a.passes.end(), b.passes.begin(), b.passes.end(), same_pass);
@@ -157,10 +204,12 @@ void Executor::prepare(const Plan& plan) {
         std::vector<GLuint> outputs;
         for (const ImageRef& output : plan.passes[i].outputs)
             outputs.push_back(ready.targets[output.index]->name());
-        ready.passes[i].framebuffer = gl::make_framebuffer(outputs);
+        if (!outputs.empty()) ready.passes[i].framebuffer = gl::make_framebuffer(outputs);
         const auto& bytes = plan.passes[i].uniform_block;
         if (!bytes.empty()) ready.passes[i].block = gl::make_buffer(bytes.size(), bytes.data());
     }
+    if (!plan.decisions.empty()) ready.decisions.emplace(plan);
+    if (has_tiles(plan)) ready.tiles.emplace(plan);
     ready.plan = plan;
     state.current = std::move(ready);
     state.profile.assign(plan.passes.size(), {});
@@ -191,6 +240,8 @@ std::uint32_t Executor::run(const FrameInputs& inputs, Timing timing, Watch watc
     glNamedBufferSubData(state.frame_buffer.name(), 0, sizeof(block), &block);
     glBindBufferBase(GL_UNIFORM_BUFFER, 0, state.frame_buffer.name());
     glBindVertexArray(state.vertex_array.name());
+    if (state.current.decisions) state.current.decisions->begin_frame();
+    if (state.current.tiles) state.current.tiles->begin_frame();
 
     if (watch == Watch::nonfinite) {
         state.watch->begin_frame();
@@ -205,7 +256,7 @@ std::uint32_t Executor::run(const FrameInputs& inputs, Timing timing, Watch watc
     }
     for (std::size_t i = 0; i < plan.passes.size(); ++i) {
         const gl::HostTime start = timing == Timing::profile ? gl::HostTime::now() : gl::HostTime{};
-        state.draw(state.current.passes[i], plan.passes[i], inputs.textures);
+        state.execute(i, inputs.textures);
         if (timing == Timing::profile) {
             glFinish();
             const gl::HostTime end = gl::HostTime::now();
@@ -234,6 +285,13 @@ std::uint32_t Executor::run(const FrameInputs& inputs, Timing timing, Watch watc
 Report Executor::report() const {
     const State& state = *state_;
     Report report = describe(state.current.plan);
+    if (state.current.decisions && state.picture)
+        tell_decisions(state.current.decisions->read(), state.current.plan, report);
+    if (state.current.tiles && state.picture) {
+        const std::vector<std::optional<int>> drawn = state.current.tiles->read();
+        for (std::size_t i = 0; i < drawn.size(); ++i)
+            report.passes[i].tiles_drawn = drawn[i];
+    }
     if (state.last_watch == Watch::nonfinite) report.nonfinite = state.watch->findings(state.current.plan);
     if (state.last_timing == Timing::profile) {
         for (std::size_t i = 0; i < report.passes.size(); ++i) {

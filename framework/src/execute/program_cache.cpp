@@ -1,5 +1,7 @@
 #include <execute/program_cache.hpp>
 
+#include <execute/tile_passes.hpp>
+
 #include <gl/context.hpp>
 #include <image/files.hpp>
 
@@ -27,7 +29,9 @@ void main() {
 
 ProgramCache::ProgramCache(std::filesystem::path directory) : directory_(std::move(directory)) {
     const gl::DeviceInfo device = gl::current_device();
-    device_ = device.vendor + "\n" + device.renderer + "\n" + device.version;
+    made_by_ = device.vendor + "\n" + device.renderer + "\n" + device.version;
+    made_by_ += vertex_text;
+    made_by_ += tile_vertex_text;
     GLint count = 0;
     glGetIntegerv(GL_NUM_PROGRAM_BINARY_FORMATS, &count);
     binary_formats_.resize(static_cast<std::size_t>(count));
@@ -38,13 +42,29 @@ ProgramCache::ProgramCache(std::filesystem::path directory) : directory_(std::mo
     }
 }
 
+namespace {
+
+gl::Program link(const ProgramSource& source) {
+    switch (source.kind) {
+    case ProgramKind::full_screen:
+        return gl::make_program(vertex_text, source.text, "", source.files);
+    case ProgramKind::tiles:
+        return gl::make_program(tile_vertex_text, source.text, "", source.files);
+    case ProgramKind::compute:
+        return gl::make_compute_program(source.text, "", source.files);
+    }
+    return {};
+}
+
+} // namespace
+
 GLuint ProgramCache::get(const ProgramSource& source, const Pass& pass) {
     gl::Program& program = programs_[source.key];
     if (program) return program.name();
     program = load(source);
     if (program) return program.name();
     try {
-        program = gl::make_program(vertex_text, source.text, "", source.files);
+        program = link(source);
     } catch (const Error& error) {
         Place place = error.place();
         place.effect = pass.name;
@@ -55,7 +75,7 @@ GLuint ProgramCache::get(const ProgramSource& source, const Pass& pass) {
 }
 
 std::filesystem::path ProgramCache::file_of(const ProgramSource& source) const {
-    const std::size_t device_key = std::hash<std::string>{}(device_);
+    const std::size_t device_key = std::hash<std::string>{}(made_by_);
     return directory_ / fmt::format("{:016x}{:016x}.program", device_key, source.key);
 }
 

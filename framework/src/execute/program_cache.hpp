@@ -28,7 +28,7 @@ private:
 
     std::filesystem::path directory_;
     std::vector<GLint> binary_formats_; ///< that the driver knows
-    std::string device_;                ///< binaries are good for this driver only
+    std::string made_by_; ///< what binaries depend on besides their text: the driver, the vertex shaders
     std::map<std::uint64_t, gl::Program> programs_;
 };
 

@@ -172,6 +172,14 @@ Buffer make_buffer(std::size_t bytes, const void* data, GLbitfield flags) {
     return Buffer(name);
 }
 
+BufferTexture make_buffer_texture(const Buffer& buffer, GLenum format) {
+    GLuint name = 0;
+    glCreateTextures(GL_TEXTURE_BUFFER, 1, &name);
+    BufferTexture texture(name);
+    glTextureBuffer(name, format, buffer.name());
+    return texture;
+}
+
 VertexArray make_vertex_array() {
     GLuint name = 0;
     glCreateVertexArrays(1, &name);

@@ -49,6 +49,7 @@ using VertexArray = Handle<destroy_vertex_array>;
 using Program = Handle<destroy_program>;
 using Query = Handle<destroy_query>;
 using Sampler = Handle<destroy_sampler>;
+using BufferTexture = Handle<destroy_texture>;
 
 GLenum internal_format(Format format);
 
@@ -82,6 +83,8 @@ std::vector<unsigned char> read_texture_codes(GLuint texture, int width, int hei
 Framebuffer make_framebuffer(const std::vector<GLuint>& colors, GLuint depth = 0);
 /// `bytes` is at least 1; `data` may be null.
 Buffer make_buffer(std::size_t bytes, const void* data, GLbitfield flags = GL_DYNAMIC_STORAGE_BIT);
+/// A view of a buffer for texelFetch; `format` is a GL internal format.
+BufferTexture make_buffer_texture(const Buffer& buffer, GLenum format);
 VertexArray make_vertex_array();
 /// Clamp to edge; linear or nearest, no mips.
 Sampler make_sampler(bool linear);

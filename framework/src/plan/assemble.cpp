@@ -128,11 +128,25 @@ std::string numbers_declaration(const std::vector<Stage>& stages, const Numbers&
     return text + "};\n";
 }
 
+std::string_view kind_name(ProgramKind kind) {
+    switch (kind) {
+    case ProgramKind::full_screen:
+        return "full screen";
+    case ProgramKind::tiles:
+        return "tiles";
+    case ProgramKind::compute:
+        return "compute";
+    }
+    return "";
+}
+
 /// Collects a program: every file once, every constant and struct once.
 class Assembly {
 public:
-    explicit Assembly(const Numbers& numbers) {
-        program_.text = "#version 450 core\n";
+    Assembly(ProgramKind kind, const Numbers& numbers) {
+        program_.kind = kind;
+        program_.text =
+            fmt::format("#version 450 core // {}\n", kind_name(kind)); // in the text, so in its key
         library("prelude.glsl", Place{});
         generated(frame_declaration(numbers));
     }
@@ -357,7 +371,7 @@ std::string why_not_together(const Stage& a, const Stage& b) {
 }
 
 ProgramSource assemble_compose(const std::vector<Stage>& stages, Encoding encoding, const Numbers& numbers) {
-    Assembly assembly(numbers);
+    Assembly assembly(ProgramKind::full_screen, numbers);
     for (const Stage& stage : stages)
         assembly.function(stage);
     if (encoding != Encoding::none) assembly.library("output.glsl", Place{});
@@ -380,8 +394,8 @@ ProgramSource assemble_compose(const std::vector<Stage>& stages, Encoding encodi
     return assembly.finish();
 }
 
-ProgramSource assemble_fragment(const Stage& stage, int outputs, const Numbers& numbers) {
-    Assembly assembly(numbers);
+ProgramSource assemble_fragment(const Stage& stage, int outputs, bool tiled, const Numbers& numbers) {
+    Assembly assembly(tiled ? ProgramKind::tiles : ProgramKind::full_screen, numbers);
     assembly.function(stage);
     assembly.generated(numbers_declaration({stage}, numbers));
     assembly.generated(sampler_declarations({stage}, 0));
@@ -398,6 +412,26 @@ ProgramSource assemble_fragment(const Stage& stage, int outputs, const Numbers& 
         assembly.generated(
             fmt::format("    {}({}{});\n}}\n", stage.function(), arguments({stage}, 0), results));
     }
+    return assembly.finish();
+}
+
+ProgramSource assemble_decision(const Stage& stage, int decision, const std::vector<CensusInput>& censuses,
+                                const Numbers& numbers) {
+    Assembly assembly(ProgramKind::compute, numbers);
+    assembly.library("decide.glsl", Place{});
+    assembly.function(stage);
+    assembly.generated(numbers_declaration({stage}, numbers));
+    std::string list;
+    for (const CensusInput& input : censuses)
+        list += fmt::format("{}({}u), ", input.depth ? "postfx_depth_census" : "postfx_census", input.slot);
+    assembly.generated(fmt::format("void main() {{\n    postfx_decide({}u, {}({}stage_0));\n}}\n", decision,
+                                   stage.function(), list));
+    return assembly.finish();
+}
+
+ProgramSource assemble_census(bool depth, const Numbers& numbers) {
+    Assembly assembly(ProgramKind::compute, numbers);
+    assembly.library(depth ? "census_depth.glsl" : "census_color.glsl", Place{});
     return assembly.finish();
 }
 

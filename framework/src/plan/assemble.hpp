@@ -57,7 +57,20 @@ struct Numbers {
 ProgramSource assemble_compose(const std::vector<Stage>& stages, Encoding encoding, const Numbers& numbers);
 
 /// The program of a pass of its own. Texture units: the stage's samplers in order.
-ProgramSource assemble_fragment(const Stage& stage, int outputs, const Numbers& numbers);
+ProgramSource assemble_fragment(const Stage& stage, int outputs, bool tiled, const Numbers& numbers);
+
+/// A compute program that asks the effect's function, with the censuses of its inputs: slots, and whether of a depth.
+struct CensusInput {
+    int slot = -1;
+    bool depth = false;
+};
+ProgramSource assemble_decision(const Stage& stage, int decision, const std::vector<CensusInput>& censuses,
+                                const Numbers& numbers);
+
+/// A compute program that counts an image (texture unit 0) into a slot (uniform location 0).
+ProgramSource assemble_census(bool depth, const Numbers& numbers);
+/// What the census program's one group looks at [pixels].
+inline constexpr int census_group_width = 64, census_group_height = 64;
 
 /// Names everything that is compiled in, so that equal keys have equal programs.
 std::string program_key(const std::vector<Stage>& stages, std::string_view form, const Numbers& numbers);

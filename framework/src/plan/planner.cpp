@@ -1,4 +1,5 @@
 #include <plan/assemble.hpp>
+#include <plan/condition.hpp>
 #include <plan/record.hpp>
 #include <plan/targets.hpp>
 
@@ -10,6 +11,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <map>
+#include <optional>
 #include <unordered_map>
 
 namespace postfx {
@@ -17,7 +21,17 @@ namespace {
 
 constexpr std::size_t most_uniform_bytes = 16384; // of a block; GL 4.5 promises no more
 
-const ImageRef nothing{};
+/// Programs double with each: one with the effect's code, one without.
+constexpr int most_decisions_in_a_pass = 3;
+
+/// Stands for the picture so far, whichever image it is in.
+const ImageRef the_picture{};
+
+/// One of the images that the picture so far may be in, by what the frame decided.
+struct Alternative {
+    ImageRef image;
+    Condition condition;
+};
 
 /// A compose function that waits to be drawn, with the images that its samplers read.
 struct WaitingStage {
@@ -25,10 +39,12 @@ struct WaitingStage {
     std::vector<PassInput> inputs;
     std::size_t effect = 0; ///< into Plan::effects
     std::size_t bytes = 0;  ///< of its parameter struct
+    int decision = -1;      ///< into Plan::decisions, if the frame decides
 };
 
-/// Walks along the chain once. `stored_` is the picture so far; `waiting_` are functions of its pixels that
-/// were not drawn yet, because those after them may join them in one pass.
+/// Walks along the chain once. `stored_` is the picture so far: one image, or, behind effects that the frame decides
+/// on, alternatives of which exactly one holds. `waiting_` are functions of its pixels that were not drawn yet,
+/// because those after them may join them in one pass.
 class Walk {
 public:
     /// A program by what it is made of. Its effects are kept, so that their addresses, which are part of the
@@ -39,27 +55,29 @@ public:
     };
     using Programs = std::unordered_map<std::string, KnownProgram>;
 
-    Walk(const Facts& facts, Programs& programs)
-        : facts_(facts), programs_(programs), frame_(frame_block(facts.width, facts.height, facts.camera)) {
+    Walk(const Facts& facts, Skip skip, Programs& programs)
+        : facts_(facts), skip_(skip), programs_(programs),
+          frame_(frame_block(facts.width, facts.height, facts.camera)) {
         plan_.width = facts.width;
         plan_.height = facts.height;
-        stored_ = attachment("color");
+        stored_ = {{attachment("color"), {}}};
     }
 
     void add(const ChainEntry& given) {
         const ChainEntry entry = within_ranges(given);
         plan_.effects.push_back({entry.name, entry.effect->id, EffectStatus::ran, "", "", ""});
         if (!entry.enabled) return skip({"configuration", "exact", "enabled is false"});
-        const Recording recording = record(entry, facts_);
+        const Recording recording = record(entry, facts_, skip_);
         if (recording.identity) return skip(*recording.identity);
         warn_about_order(entry);
+        if (recording.decision) add_decision(entry, recording);
         add_passes(entry, recording);
     }
 
     Plan finish() {
         const Encoding encoding = final_encoding();
         if (!waiting_.empty() || encoding != Encoding::none) flush(encoding, "the chain ends");
-        plan_.picture = stored_;
+        plan_.picture = one_image();
         drop_unread_passes(plan_);
         share_targets(plan_);
         keep_read_attachments(plan_);
@@ -121,9 +139,10 @@ private:
             if (pass.compose) {
                 Stage stage = make_stage(entry, pass);
                 const std::size_t bytes = struct_bytes(stage);
-                wait({std::move(stage), std::move(inputs), plan_.effects.size() - 1, bytes});
+                wait({std::move(stage), std::move(inputs), plan_.effects.size() - 1, bytes,
+                      plan_.effects.back().decision});
             } else {
-                outputs.push_back(add_fragment_pass(entry, pass, std::move(inputs)));
+                outputs.push_back(add_fragment_pass(entry, recording, pass, std::move(inputs), outputs));
             }
         }
     }
@@ -131,25 +150,109 @@ private:
     ImageRef resolve(const RecordedImage& image, const std::vector<std::vector<ImageRef>>& outputs) {
         switch (image.kind) {
         case RecordedImage::Kind::color:
-            return stored_;
+            return the_picture;
         case RecordedImage::Kind::attachment:
             return attachment(image.attachment);
         case RecordedImage::Kind::output:
             return outputs[image.pass][image.output];
         }
-        return nothing;
+        return the_picture;
     }
 
-    std::vector<ImageRef> add_fragment_pass(const ChainEntry& entry, const RecordedPass& recorded,
-                                            std::vector<PassInput> inputs) {
+    /// Append the pass, drawn under `condition`: once for each image that the picture may be in, if it reads that.
+    void emit(const Pass& pass, const Condition& condition) {
+        const auto is_picture = [](const PassInput& input) { return input.image == the_picture; };
+        if (std::none_of(pass.inputs.begin(), pass.inputs.end(), is_picture)) {
+            plan_.passes.push_back(pass);
+            plan_.passes.back().condition = condition;
+            return;
+        }
+        for (const Alternative& alternative : stored_) {
+            const std::optional<Condition> holding = both(condition, alternative.condition);
+            if (!holding) continue;
+            plan_.passes.push_back(pass);
+            Pass& emitted = plan_.passes.back();
+            emitted.condition = *holding;
+            for (PassInput& input : emitted.inputs) {
+                if (is_picture(input)) input.image = alternative.image;
+            }
+        }
+    }
+
+    /// When the passes of the effect that is being added are drawn.
+    Condition own_condition() const {
+        const int decision = plan_.effects.back().decision;
+        return decision < 0 ? Condition{} : Condition{Term{1u << decision, 0}};
+    }
+
+    void add_decision(const ChainEntry& entry, const Recording& recording) {
+        const RecordedDecision& asked = *recording.decision;
+        if (plan_.decisions.size() == max_decisions) return; // it runs in every frame
+        if (recording.reads_color(asked.pass) && !waiting_.empty()) {
+            flush(Encoding::none, fmt::format("{} asks what is in the stored picture", entry.name));
+        }
+        std::vector<CensusInput> censuses;
+        for (const RecordedInput& input : asked.pass.inputs)
+            censuses.push_back(census_of(recording.images[input.image]));
+        const int decision = static_cast<int>(plan_.decisions.size());
+        plan_.decisions.push_back(asked.decision);
+        plan_.effects.back().decision = decision;
+
+        const Stage stage = make_stage(entry, asked.pass);
+        const Numbers numbers = numbers_of(facts_.width, facts_.height);
+        std::string form = fmt::format("decision {}", decision);
+        Pass pass;
+        pass.kind = PassKind::decide;
+        pass.slot = decision;
+        for (const CensusInput& census : censuses) {
+            pass.censuses.push_back(census.slot);
+            form += fmt::format(" {}{}", census.slot, census.depth ? "d" : "");
+        }
+        pass.name = entry.name + "/decision";
+        pass.effects = {entry.name};
+        pass.program = program({stage}, form, numbers,
+                               [&] { return assemble_decision(stage, decision, censuses, numbers); });
+        pass.uniform_block = uniform_block({stage}, numbers);
+        pass.width = pass.height = 1;
+        plan_.passes.push_back(std::move(pass));
+    }
+
+    /// Count every image once, however many ask.
+    CensusInput census_of(const RecordedImage& image) {
+        const bool of_picture = image.kind == RecordedImage::Kind::color;
+        const bool depth = image.attachment == "depth";
+        const std::string name = of_picture ? fmt::format("picture {}", pictures_stored_) : image.attachment;
+        const auto [found, is_new] = censuses_.try_emplace(name, plan_.censuses);
+        if (!is_new) return {found->second, depth};
+        const Numbers numbers = numbers_of(facts_.width, facts_.height);
+        Pass pass;
+        pass.kind = PassKind::census;
+        pass.slot = plan_.censuses++;
+        pass.name = fmt::format("census of {}", of_picture ? "the picture" : name);
+        pass.program = program({}, depth ? "census depth" : "census", numbers,
+                               [&] { return assemble_census(depth, numbers); });
+        pass.uniform_block = uniform_block({}, numbers);
+        pass.width = facts_.width;
+        pass.height = facts_.height;
+        pass.inputs = {{name, of_picture ? the_picture : attachment(image.attachment), false}};
+        emit(pass, {});
+        return {pass.slot, depth};
+    }
+
+    /// `before`: outputs of the effect's passes before this one. Returns its own.
+    std::vector<ImageRef> add_fragment_pass(const ChainEntry& entry, const Recording& recording,
+                                            const RecordedPass& recorded, std::vector<PassInput> inputs,
+                                            const std::vector<std::vector<ImageRef>>& before) {
         const std::vector<Stage> stages = {make_stage(entry, recorded)};
         Pass pass;
         pass.name = entry.name + "/" + recorded.name;
         pass.effects = {entry.name};
         const int output_count = static_cast<int>(recorded.formats.size());
         const Numbers numbers = numbers_of(recorded.width, recorded.height);
-        pass.program = program(stages, fmt::format("fragment {}", output_count), numbers,
-                               [&] { return assemble_fragment(stages.front(), output_count, numbers); });
+        const bool tiled = recorded.where >= 0;
+        pass.program =
+            program(stages, fmt::format("fragment {}{}", output_count, tiled ? " tiled" : ""), numbers,
+                    [&] { return assemble_fragment(stages.front(), output_count, tiled, numbers); });
         pass.inputs = std::move(inputs);
         for (Format format : recorded.formats) {
             pass.outputs.push_back(new_target(recorded.width, recorded.height, format));
@@ -158,8 +261,15 @@ private:
         pass.height = recorded.height;
         pass.format = recorded.formats.front();
         pass.uniform_block = uniform_block(stages, numbers);
-        plan_.passes.push_back(std::move(pass));
-        return plan_.passes.back().outputs;
+        if (tiled) {
+            const RecordedImage& mask = recording.images[recorded.where];
+            pass.where = resolve(mask, before);
+            pass.tiles_across = mask.width;
+            pass.tiles_down = mask.height;
+            pass.tile_side = recorded.tile_side;
+        }
+        emit(pass, own_condition());
+        return pass.outputs;
     }
 
     /// Let a compose function join those that wait, or draw them first and say why.
@@ -180,35 +290,83 @@ private:
             apart = fmt::format("{} would need {} bytes of uniforms in one pass, {} are sure",
                                 stage.stage.entry, bytes, most_uniform_bytes);
         }
+        const auto decisions = std::count_if(waiting_.begin(), waiting_.end(),
+                                             [](const WaitingStage& other) { return other.decision >= 0; });
+        if (apart.empty() && stage.decision >= 0 && decisions == most_decisions_in_a_pass) {
+            apart = fmt::format("the frame would decide on more than {} effects of one pass", decisions);
+        }
         if (!apart.empty() && !waiting_.empty()) flush(Encoding::none, apart);
         waiting_.push_back(std::move(stage));
     }
 
-    /// Draw what waits as one pass; `because` is why nothing more can join it.
+    /// Draw what waits as one pass; `because` is why nothing more can join it. Where the frame decides on some of
+    /// it, there is a pass for each outcome, with the code of those that live.
     void flush(Encoding encoding, const std::string& because) {
+        explain_fusion(because);
+        std::vector<int> decisions;
+        for (const WaitingStage& waiting : waiting_) {
+            if (waiting.decision >= 0) decisions.push_back(waiting.decision);
+        }
+        const Format format = encoding == Encoding::none ? facts_.working_format : Format::rgba8;
+        const ImageRef target = new_target(facts_.width, facts_.height, format);
+        std::vector<Alternative> after = {{target, {}}};
+        for (std::uint32_t outcome = 0; outcome < 1u << decisions.size(); ++outcome) {
+            Term term;
+            for (std::size_t i = 0; i < decisions.size(); ++i)
+                (outcome >> i & 1u ? term.dead : term.live) |= 1u << decisions[i];
+            const Condition condition = decisions.empty() ? Condition{} : Condition{term};
+            std::vector<WaitingStage> living;
+            std::copy_if(waiting_.begin(), waiting_.end(), std::back_inserter(living),
+                         [&](const WaitingStage& waiting) {
+                             return waiting.decision < 0 || (term.live >> waiting.decision & 1u) != 0;
+                         });
+            if (living.empty() && encoding == Encoding::none) {
+                for (const Alternative& before : stored_) {
+                    if (const auto holding = both(condition, before.condition))
+                        after.push_back({before.image, *holding});
+                }
+                continue;
+            }
+            emit(composed(living, encoding, target), condition);
+            if (!decisions.empty()) after.front().condition.push_back(term);
+        }
+        if (after.size() == 1) after.front().condition.clear(); // whatever the outcome
+        stored_ = std::move(after);
+        ++pictures_stored_;
+        waiting_.clear();
+    }
+
+    Pass composed(const std::vector<WaitingStage>& living, Encoding encoding, const ImageRef& target) {
         std::vector<Stage> stages;
         Pass pass;
-        pass.inputs.push_back({"color", stored_, false});
-        for (const WaitingStage& waiting : waiting_) {
+        pass.inputs.push_back({"color", the_picture, false});
+        for (const WaitingStage& waiting : living) {
             stages.push_back(waiting.stage);
             pass.effects.push_back(waiting.stage.entry);
             pass.inputs.insert(pass.inputs.end(), waiting.inputs.begin(), waiting.inputs.end());
         }
-        explain_fusion(because);
         std::vector<std::string> parts = pass.effects;
         if (encoding != Encoding::none) parts.emplace_back("output");
+        if (parts.empty()) parts.emplace_back("copy");
         pass.name = fmt::format("{}", fmt::join(parts, "+"));
         const Numbers numbers = numbers_of(facts_.width, facts_.height);
         pass.program = program(stages, fmt::format("compose {}", static_cast<int>(encoding)), numbers,
                                [&] { return assemble_compose(stages, encoding, numbers); });
-        pass.format = encoding == Encoding::none ? facts_.working_format : Format::rgba8;
-        pass.outputs = {new_target(facts_.width, facts_.height, pass.format)};
+        pass.format = plan_.targets[target.index].format;
+        pass.outputs = {target};
         pass.width = facts_.width;
         pass.height = facts_.height;
         pass.uniform_block = uniform_block(stages, numbers);
-        plan_.passes.push_back(std::move(pass));
-        stored_ = plan_.passes.back().outputs.front();
-        waiting_.clear();
+        return pass;
+    }
+
+    /// The picture in one image that is known beforehand: where the frame may leave it in others, it is copied.
+    ImageRef one_image() {
+        if (stored_.size() == 1) return stored_.front().image;
+        const Alternative last = stored_.front();
+        stored_.erase(stored_.begin());
+        emit(composed({}, Encoding::none, last.image), {});
+        return last.image;
     }
 
     void explain_fusion(const std::string& because) {
@@ -268,10 +426,13 @@ private:
     }
 
     const Facts& facts_;
+    Skip skip_;
     Programs& programs_;
     FrameBlock frame_;
     Plan plan_;
-    ImageRef stored_;
+    std::vector<Alternative> stored_;
+    int pictures_stored_ = 0;             ///< tells one stored picture from the next
+    std::map<std::string, int> censuses_; ///< slots by what was counted
     std::vector<WaitingStage> waiting_;
     std::string display_since_; ///< the tone map passed, if any
     std::string early_display_; ///< a display effect passed before any tone map
@@ -315,7 +476,7 @@ Plan Planner::plan(const Chain& chain, const Facts& facts) {
     if (facts.width < 1 || facts.height < 1) {
         throw Error(fmt::format("a picture of {}x{} pixels can't be planned", facts.width, facts.height));
     }
-    Walk walk(facts, memory_->programs);
+    Walk walk(facts, chain.skip, memory_->programs);
     for (const ChainEntry& entry : chain.entries)
         walk.add(entry);
     return walk.finish();

@@ -38,9 +38,18 @@ struct Wrong {
 /// problem is kept and everything after it ignored.
 class Recorder {
 public:
-    Recorder(const ChainEntry& entry, const Facts& facts) : entry_(entry), facts_(facts) {
-        abi_ = {sizeof(postfx_builder), 0,       this,   on_identity, on_refuse, on_color,
-                on_attachment,          on_pass, on_size};
+    Recorder(const ChainEntry& entry, const Facts& facts, Skip skip)
+        : entry_(entry), facts_(facts), skip_(skip) {
+        abi_.struct_size = sizeof(postfx_builder);
+        abi_.context = this;
+        abi_.identity = on_identity;
+        abi_.lacks = on_lacks;
+        abi_.refuse = on_refuse;
+        abi_.color = on_color;
+        abi_.attachment = on_attachment;
+        abi_.pass = on_pass;
+        abi_.decide = on_decide;
+        abi_.size = on_size;
     }
 
     const postfx_builder& abi() const { return abi_; }
@@ -72,9 +81,19 @@ private:
         }
     }
 
-    static void on_identity(void* context, const char* moment, const char* kind, const char* reason) {
+    static std::int32_t on_identity(void* context, const char* moment, const char* kind, const char* reason) {
+        std::int32_t accepted = 1; // whatever is wrong: nothing more need be declared
         self(context).guarded(
-            [&] { self(context).identity(word_of(moment), word_of(kind), word_of(reason)); });
+            [&] { accepted = self(context).identity(word_of(moment), word_of(kind), word_of(reason)); });
+        return accepted;
+    }
+    static void on_lacks(void* context, const char* reason) {
+        self(context).guarded([&] {
+            self(context).recording_.identity = Identity{"scene", "lacks", std::string(word_of(reason))};
+        });
+    }
+    static void on_decide(void* context, const postfx_decision* decision) {
+        self(context).guarded([&] { self(context).decide(copy_abi<postfx_decision>(decision)); });
     }
     static void on_refuse(void* context, const char* message) {
         self(context).guarded([&] { throw Wrong{std::string(word_of(message))}; });
@@ -103,14 +122,59 @@ private:
         });
     }
 
-    void identity(std::string_view moment, std::string_view kind, std::string_view reason) {
+    /// May a skip of that kind be made? Throws Wrong when there is no such kind.
+    bool is_allowed(std::string_view kind) const {
+        if (!is_one_of(kind, identity_kinds)) {
+            throw Wrong{fmt::format("would be skipped for the unknown kind \"{}\"", kind)};
+        }
+        return *skip_by_word(kind) <= skip_;
+    }
+
+    bool identity(std::string_view moment, std::string_view kind, std::string_view reason) {
         if (!is_one_of(moment, moments)) {
             throw Wrong{fmt::format("is the identity at the unknown moment \"{}\"", moment)};
         }
-        if (!is_one_of(kind, identity_kinds)) {
-            throw Wrong{fmt::format("is an identity of the unknown kind \"{}\"", kind)};
-        }
+        if (!is_allowed(kind)) return false;
         recording_.identity = Identity{std::string(moment), std::string(kind), std::string(reason)};
+        return true;
+    }
+
+    void decide(const postfx_decision& declared) {
+        const std::string_view kind = word_of(declared.kind), source = word_of(declared.source);
+        if (recording_.decision) throw Wrong{"asks the frame twice"};
+        if (!recording_.passes.empty()) throw Wrong{"asks the frame after it declared passes"};
+        if (!is_allowed(kind)) return;
+        RecordedDecision made;
+        made.pass.name = "decision";
+        made.pass.source = entry_.effect->find_source(source);
+        if (!made.pass.source) throw Wrong{fmt::format("has no source \"{}\" (decision)", source)};
+        if (declared.input_count < 1 || declared.input_count > most_pass_inputs) {
+            throw Wrong{fmt::format("decides by {} images", declared.input_count)};
+        }
+        read_inputs_and_numbers(declared, made.pass);
+        made.decision = {std::string(kind), std::string(word_of(declared.compared)),
+                         std::string(word_of(declared.limit))};
+        recording_.decision = std::move(made);
+    }
+
+    /// Of a postfx_pass or postfx_decision.
+    template<class Abi>
+    void read_inputs_and_numbers(const Abi& declared, RecordedPass& pass) const {
+        for (std::uint32_t i = 0; i < declared.input_count; ++i) {
+            pass.inputs.push_back(input(abi_element(declared.inputs, declared.input_stride, i), pass.name));
+        }
+        for (std::uint32_t i = 0; i < declared.value_count; ++i) {
+            pass.values.push_back(number(abi_element(declared.values, declared.value_stride, i), pass.name));
+        }
+        for (std::uint32_t i = 0; i < declared.constant_count; ++i) {
+            pass.constants.push_back(
+                number(abi_element(declared.constants, declared.constant_stride, i), pass.name));
+            const RecordedNumber& constant = pass.constants.back();
+            if (!std::isfinite(constant.value[0])) {
+                throw Wrong{fmt::format("pass {}: the constant {} is {}", pass.name, constant.name,
+                                        constant.value[0])};
+            }
+        }
     }
 
     postfx_image add_image(RecordedImage image) {
@@ -175,26 +239,29 @@ private:
             throw Wrong{
                 fmt::format("pass {} reads {} textures, {} are sure", pass.name, declared.input_count, most)};
         }
-        for (std::uint32_t i = 0; i < declared.input_count; ++i) {
-            pass.inputs.push_back(input(abi_element(declared.inputs, declared.input_stride, i), pass.name));
-        }
-        for (std::uint32_t i = 0; i < declared.value_count; ++i) {
-            pass.values.push_back(number(abi_element(declared.values, declared.value_stride, i), pass.name));
-        }
-        for (std::uint32_t i = 0; i < declared.constant_count; ++i) {
-            pass.constants.push_back(
-                number(abi_element(declared.constants, declared.constant_stride, i), pass.name));
-            const RecordedNumber& constant = pass.constants.back();
-            if (!std::isfinite(constant.value[0])) {
-                throw Wrong{fmt::format("pass {}: the constant {} is {}", pass.name, constant.name,
-                                        constant.value[0])};
-            }
-        }
+        read_inputs_and_numbers(declared, pass);
         if (declared.output_count < 1 || declared.output_count > 8) {
             throw Wrong{fmt::format("pass {} has {} outputs", pass.name, declared.output_count)};
         }
         for (std::uint32_t i = 0; i < declared.output_count; ++i) {
             pass.formats.push_back(format(word_of(declared.formats[i]), pass.name));
+        }
+        if (declared.where != 0) {
+            if (pass.compose) throw Wrong{"composes in tiles; only passes of an effect's own are drawn so"};
+            const int mask = index(declared.where, fmt::format("pass {}: where", pass.name));
+            const RecordedImage& image = recording_.images[mask];
+            const int side = static_cast<int>(std::min<std::uint32_t>(declared.tile_side, largest_side));
+            if (image.kind != RecordedImage::Kind::output) {
+                throw Wrong{fmt::format("pass {}: a mask is an image that the effect made", pass.name)};
+            }
+            if (side < 1 || image.width != (pass.width + side - 1) / side
+                || image.height != (pass.height + side - 1) / side) {
+                throw Wrong{fmt::format("pass {}: a mask of {}x{} does not fit {}x{} pixels in tiles of {}",
+                                        pass.name, image.width, image.height, pass.width, pass.height, side)};
+            }
+            pass.tile_side = side;
+            // When everything is to run, that is how the mask is shown to be right.
+            if (skip_ != Skip::nothing) pass.where = mask;
         }
         return add_pass(std::move(pass));
     }
@@ -248,10 +315,18 @@ private:
 
     const ChainEntry& entry_;
     const Facts& facts_;
+    Skip skip_;
     postfx_builder abi_{};
     Recording recording_;
     std::string problem_;
 };
+
+std::vector<const char*> c_strings(const std::vector<std::string>& strings) {
+    std::vector<const char*> pointers;
+    for (const std::string& string : strings)
+        pointers.push_back(string.c_str());
+    return pointers;
+}
 
 postfx_camera abi_camera(const Camera& camera) {
     postfx_camera abi{};
@@ -276,11 +351,19 @@ bool Recording::reads_color(const RecordedPass& pass) const {
     });
 }
 
-Recording record(const ChainEntry& entry, const Facts& facts) {
+Recording record(const ChainEntry& entry, const Facts& facts, Skip skip) {
     const postfx_camera camera = abi_camera(facts.camera);
-    std::vector<const char*> attachments;
-    for (const std::string& name : facts.attachments)
-        attachments.push_back(name.c_str());
+    const std::vector<const char*> attachments = c_strings(facts.attachments);
+    const std::vector<const char*> empty = c_strings(facts.scene.empty);
+    postfx_scene scene{};
+    scene.struct_size = sizeof(scene);
+    scene.nearest = facts.scene.nearest;
+    scene.farthest = facts.scene.farthest;
+    scene.reach = facts.scene.reach;
+    scene.lowest = facts.scene.lowest;
+    scene.highest = facts.scene.highest;
+    scene.empty = empty.data();
+    scene.empty_count = static_cast<std::uint32_t>(empty.size());
     postfx_request request{};
     request.struct_size = sizeof(request);
     request.width = static_cast<std::uint32_t>(facts.width);
@@ -291,8 +374,9 @@ Recording record(const ChainEntry& entry, const Facts& facts) {
     request.camera = &camera;
     request.attachments = attachments.data();
     request.attachment_count = static_cast<std::uint32_t>(attachments.size());
+    request.scene = &scene;
 
-    Recorder recorder(entry, facts);
+    Recorder recorder(entry, facts, skip);
     const std::int32_t status = entry.effect->abi->plan(&request, &recorder.abi());
     Recording recording = recorder.finish();
     if (status != 0)

@@ -44,15 +44,24 @@ struct RecordedPass {
     std::vector<RecordedNumber> constants;
     std::vector<Format> formats; ///< one per output
     int width = 0, height = 0;
+    int where = -1;    ///< tile mask, into Recording::images; -1: drawn everywhere
+    int tile_side = 0; ///< pixels
 };
 
 struct Identity {
     std::string moment, kind, reason;
 };
 
+/// A question to the frame; `pass` has its source, inputs and numbers.
+struct RecordedDecision {
+    RecordedPass pass;
+    Decision decision;
+};
+
 /// What an effect answered: an identity, or passes of which the last and only the last is the compose.
 struct Recording {
     std::optional<Identity> identity;
+    std::optional<RecordedDecision> decision;
     std::vector<RecordedImage> images;
     std::vector<RecordedPass> passes;
 
@@ -61,6 +70,7 @@ struct Recording {
 };
 
 /// Call the effect's plan(). Throws Error naming the chain entry when it refuses or declares something wrong.
-Recording record(const ChainEntry& entry, const Facts& facts);
+/// `skip`: what it may leave out.
+Recording record(const ChainEntry& entry, const Facts& facts, Skip skip);
 
 } // namespace postfx

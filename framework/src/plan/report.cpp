@@ -23,8 +23,32 @@ std::string source_name(const Plan& plan, std::size_t reader, const ImageRef& im
     return "?";
 }
 
-nlohmann::ordered_json optional_json(const std::optional<double>& number) {
-    return number ? nlohmann::ordered_json(*number) : nlohmann::ordered_json(nullptr);
+template<class Value>
+nlohmann::ordered_json optional_json(const std::optional<Value>& value) {
+    return value ? nlohmann::ordered_json(*value) : nlohmann::ordered_json(nullptr);
+}
+
+/// "if glow, not shade"; alternatives with "or".
+std::string condition_text(const Plan& plan, const Condition& condition) {
+    std::vector<std::string> terms;
+    for (const Term& term : condition) {
+        std::vector<std::string> words;
+        for (const PlannedEffect& effect : plan.effects) {
+            if (effect.decision < 0) continue;
+            if (term.live >> effect.decision & 1u) words.push_back(effect.name);
+            if (term.dead >> effect.decision & 1u) words.push_back("not " + effect.name);
+        }
+        terms.push_back(fmt::format("{}", fmt::join(words, ", ")));
+    }
+    return terms.empty() ? "" : fmt::format("if {}", fmt::join(terms, " or "));
+}
+
+/// What a frame may skip, before it is known.
+std::string decision_text(const Plan& plan, const PlannedEffect& effect) {
+    if (effect.decision < 0) return "";
+    const Decision& decision = plan.decisions[effect.decision];
+    return fmt::format("; the frame skips it where {} <= {} ({})", decision.compared, decision.limit,
+                       decision.kind);
 }
 
 std::string time_text(const PassReport& pass) {
@@ -33,6 +57,12 @@ std::string time_text(const PassReport& pass) {
     if (pass.wall_ms) text += fmt::format("  {:8.2f} ms wall", *pass.wall_ms);
     if (pass.gpu_ms) text += fmt::format("  {:8.3f} ms gpu", *pass.gpu_ms);
     return text;
+}
+
+std::string tile_text(const PassReport& pass) {
+    if (pass.tiles == 0) return "";
+    if (!pass.tiles_drawn) return fmt::format("  in some of {} tiles", pass.tiles);
+    return fmt::format("  in {} of {} tiles", *pass.tiles_drawn, pass.tiles);
 }
 
 /// What an effect cost: its own passes, and those that it shares with others.
@@ -58,6 +88,8 @@ std::string cost_text(const Report& report, const PlannedEffect& effect) {
 Report describe(const Plan& plan) {
     Report report;
     report.effects = plan.effects;
+    for (PlannedEffect& effect : report.effects)
+        effect.reason += decision_text(plan, effect);
     report.clock = "none: times were not asked for";
     report.texture_bytes = plan.texture_bytes();
     report.warnings = plan.warnings;
@@ -68,6 +100,8 @@ Report describe(const Plan& plan) {
         described.effects = pass.effects;
         described.width = pass.width;
         described.height = pass.height;
+        described.condition = condition_text(plan, pass.condition);
+        described.tiles = pass.tiles_across * pass.tiles_down;
         described.format = format_info(pass.format).name;
         for (const PassInput& input : pass.inputs) {
             std::string name = source_name(plan, i, input.image);
@@ -99,6 +133,10 @@ std::string report_json(const Report& report) {
                                   {"height", pass.height},
                                   {"format", pass.format},
                                   {"reads", pass.reads},
+                                  {"condition", pass.condition},
+                                  {"drawn", optional_json(pass.drawn)},
+                                  {"tiles", pass.tiles},
+                                  {"tiles_drawn", optional_json(pass.tiles_drawn)},
                                   {"cpu_ms", optional_json(pass.cpu_ms)},
                                   {"wall_ms", optional_json(pass.wall_ms)},
                                   {"gpu_ms", optional_json(pass.gpu_ms)}});
@@ -130,13 +168,18 @@ std::string report_text(const Report& report) {
     std::string text = "effects\n";
     for (const PlannedEffect& effect : report.effects) {
         const std::string moment = effect.moment.empty() ? "" : effect.moment + ": ";
-        text += fmt::format("  {:<{}}  {:<7}  {}{}{}\n", effect.name, effect_width,
-                            status_name(effect.status), cost_text(report, effect), moment, effect.reason);
+        text += fmt::format(
+            "  {:<{}}  {:<7}  {}{}{}{}\n", effect.name, effect_width, status_name(effect.status),
+            cost_text(report, effect), moment, effect.reason,
+            effect.kind.empty() || effect.kind == "lacks" ? "" : fmt::format(" ({})", effect.kind));
     }
     text += "passes\n";
     for (const PassReport& pass : report.passes) {
-        text += fmt::format("  {:<{}}  {:>4}x{:<4} {:<10}{}  reads {}\n", pass.name, pass_width, pass.width,
-                            pass.height, pass.format, time_text(pass), fmt::join(pass.reads, ", "));
+        if (!pass.drawn.value_or(true)) continue;
+        text +=
+            fmt::format("  {:<{}}  {:>4}x{:<4} {:<10}{}  reads {}{}{}\n", pass.name, pass_width, pass.width,
+                        pass.height, pass.format, time_text(pass), fmt::join(pass.reads, ", "),
+                        tile_text(pass), pass.condition.empty() || pass.drawn ? "" : "  " + pass.condition);
     }
     text += fmt::format("textures  {:.1f} MiB\nclock     {}\n",
                         static_cast<double>(report.texture_bytes) / (1024 * 1024), report.clock);

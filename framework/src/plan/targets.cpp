@@ -11,6 +11,7 @@ void for_each_image(Plan& plan, const std::function<void(ImageRef&, std::size_t 
     for (std::size_t i = 0; i < plan.passes.size(); ++i) {
         for (PassInput& input : plan.passes[i].inputs)
             visit(input.image, i, false);
+        visit(plan.passes[i].where, i, false);
         for (ImageRef& output : plan.passes[i].outputs)
             visit(output, i, true);
     }
@@ -20,20 +21,37 @@ void for_each_image(Plan& plan, const std::function<void(ImageRef&, std::size_t 
 
 void drop_unread_passes(Plan& plan) {
     std::vector<bool> read(plan.targets.size(), false);
+    std::vector<bool> counted(static_cast<std::size_t>(plan.censuses), false);
+    std::uint32_t asked = 0; // decisions by bit
     const auto mark = [&](const ImageRef& image) {
         if (image.kind == ImageRef::Kind::target) read[image.index] = true;
+    };
+    const auto is_needed = [&](const Pass& pass) {
+        switch (pass.kind) {
+        case PassKind::decide:
+            return (asked >> pass.slot & 1u) != 0;
+        case PassKind::census:
+            return static_cast<bool>(counted[pass.slot]);
+        case PassKind::draw:
+            break;
+        }
+        return std::any_of(pass.outputs.begin(), pass.outputs.end(),
+                           [&](const ImageRef& output) { return read[output.index]; });
     };
     mark(plan.picture);
     for (std::size_t i = plan.passes.size(); i-- > 0;) {
         const Pass& pass = plan.passes[i];
-        const bool needed = std::any_of(pass.outputs.begin(), pass.outputs.end(),
-                                        [&](const ImageRef& output) { return read[output.index]; });
-        if (needed) {
-            for (const PassInput& input : pass.inputs)
-                mark(input.image);
-        } else {
+        if (!is_needed(pass)) {
             plan.passes.erase(plan.passes.begin() + static_cast<std::ptrdiff_t>(i));
+            continue;
         }
+        for (const PassInput& input : pass.inputs)
+            mark(input.image);
+        mark(pass.where);
+        for (const Term& term : pass.condition)
+            asked |= term.live | term.dead;
+        for (int slot : pass.censuses)
+            counted[slot] = true;
     }
 }
 
@@ -49,7 +67,7 @@ void share_targets(Plan& plan) {
     std::vector<std::size_t> busy_until; // per shared target
     std::vector<int> new_index(plan.targets.size(), -1);
     for_each_image(plan, [&](ImageRef& image, std::size_t pass, bool written) {
-        if (!written || image.kind != ImageRef::Kind::target) return;
+        if (!written || image.kind != ImageRef::Kind::target || new_index[image.index] >= 0) return;
         const Target& wanted = plan.targets[image.index];
         std::size_t slot = 0;
         while (slot < shared.size()

@@ -1,0 +1,384 @@
+// What is skipped because nothing calls for it makes no difference: for every effect, scene and moment, against the
+// chain in which everything runs. An effect gets these checks by existing; none is named here. POSTFX_LONG=1 tries
+// slow levels on every input.
+#include "scene_inputs.hpp"
+
+#include <catch2/catch.hpp>
+#include <fmt/format.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <map>
+#include <optional>
+#include <random>
+
+using namespace postfx;
+using namespace postfx::testing;
+
+namespace {
+
+constexpr std::uint32_t random_seed = 20261122;
+constexpr Size size{96, 54};
+
+bool is_long() {
+    const char* longer = std::getenv("POSTFX_LONG");
+    return longer && *longer == '1';
+}
+
+/// Zero in every pixel.
+bool is_black(const Image& image) {
+    return std::all_of(image.values.begin(), image.values.end(), [](float value) { return value == 0; });
+}
+
+/// What a host could know of the scene, from the pixels: as tight as bounds can be.
+SceneBounds bounds_of(const Input& input) {
+    SceneBounds bounds;
+    const auto depth = input.attachments.find("depth");
+    if (depth != input.attachments.end()) {
+        bounds.nearest = SceneBounds::infinity;
+        bounds.farthest = bounds.reach = 0;
+        const double up = input.camera.tan_half_fov();
+        const double across = up * input.color.width / input.color.height;
+        const double longest = std::sqrt(1 + up * up + across * across); // of a ray, per metre along the axis
+        for (const float sample : depth->second.values) {
+            if (sample == static_cast<float>(input.camera.sky_depth)) continue;
+            const double z = input.camera.view_z(sample);
+            bounds.nearest = std::min(bounds.nearest, z);
+            bounds.farthest = std::max(bounds.farthest, z);
+            bounds.reach = std::max(bounds.reach, z * longest);
+        }
+        if (bounds.farthest == 0) bounds.empty.emplace_back("depth");
+    }
+    for (const auto& [name, image] : input.attachments) {
+        if (name != "depth" && is_black(image)) bounds.empty.push_back(name);
+    }
+    return bounds;
+}
+
+struct Outcome {
+    Image picture;
+    Report report;
+};
+
+/// How often what was skipped, by moment and kind.
+using Tally = std::map<std::string, int>;
+
+class Court {
+public:
+    /// Nothing when an effect refuses its values.
+    std::optional<Outcome> run(Chain chain, const Input& input, Skip skip, bool fuse = false) {
+        chain.skip = skip;
+        Facts facts = facts_of(input);
+        facts.fuse = fuse;
+        if (knows_bounds) facts.scene = bounds_of(input);
+        std::optional<Plan> plan;
+        try {
+            plan = planner_.plan(chain, facts);
+        } catch (const Error&) {
+            return std::nullopt;
+        }
+        runner_.prepare(std::move(*plan));
+        Image picture = runner_.draw(input);
+        return Outcome{std::move(picture), runner_.report()};
+    }
+
+    /// What was wrong with skipping, or "".
+    std::string check(const Chain& chain, const Input& input) {
+        std::string problem;
+        for (const bool known : {true, false}) {
+            knows_bounds = known;
+            problem += check_once(chain, input);
+        }
+        return problem;
+    }
+
+    std::string check_once(const Chain& chain, const Input& input) {
+        const std::optional<Outcome> all = run(chain, input, Skip::nothing);
+        if (!all) return "";
+        ++cases;
+        std::string problem;
+        const Outcome exact = *run(chain, input, Skip::exact);
+        count(exact.report);
+        if (!same_bits(exact.picture, all->picture)) {
+            problem += fmt::format("exact skips change bits ({}): {}\n",
+                                   first_difference(exact.picture, all->picture), skips(exact.report));
+        }
+        // In one pass with others, a compiler may round what is left in another order: by float steps, so within a
+        // code. Without fusion there must not be a bit of difference.
+        const Outcome code = *run(chain, input, Skip::code, true);
+        const int codes =
+            largest_code_difference(code.picture, run(chain, input, Skip::nothing, true)->picture);
+        if (codes > 1) problem += fmt::format("code skips change {} codes: {}\n", codes, skips(code.report));
+        return problem;
+    }
+
+    static std::string skips(const Report& report) {
+        std::string text;
+        for (const PlannedEffect& effect : report.effects) {
+            if (effect.status != EffectStatus::skipped) continue;
+            text += fmt::format("{} ({}, {}: {}) ", effect.name, effect.moment, effect.kind, effect.reason);
+        }
+        for (const PassReport& pass : report.passes) {
+            if (pass.tiles_drawn && *pass.tiles_drawn < pass.tiles) {
+                text += fmt::format("{} in {} of {} tiles ", pass.name, *pass.tiles_drawn, pass.tiles);
+            }
+        }
+        return text;
+    }
+
+    void print(const std::string& what) const {
+        fmt::print("{}: {} cases", what, cases);
+        for (const auto& [moment, times] : tally)
+            fmt::print(", {} x {}", times, moment);
+        fmt::print("\n");
+    }
+
+    /// Does the host know the scene's bounds? If not, more is left to the frame.
+    bool knows_bounds = true;
+    int cases = 0;
+    Tally tally;
+
+private:
+    void count(const Report& report) {
+        for (const PlannedEffect& effect : report.effects) {
+            if (effect.status == EffectStatus::skipped) ++tally[effect.moment + " " + effect.kind];
+        }
+        for (const PassReport& pass : report.passes) {
+            if (pass.tiles_drawn && pass.drawn.value_or(true) && *pass.tiles_drawn < pass.tiles)
+                ++tally["tile"];
+        }
+    }
+
+    static std::string first_difference(const Image& a, const Image& b) {
+        for (std::size_t i = 0; i < a.values.size(); ++i) {
+            if (a.values[i] != b.values[i]) {
+                const std::size_t pixel = i / static_cast<std::size_t>(a.channels);
+                return fmt::format("at {}, {}: {} for {}", pixel % a.width, pixel / a.width, a.values[i],
+                                   b.values[i]);
+            }
+        }
+        return "only in what == does not see";
+    }
+
+    static double code_of(float light) {
+        const double x = std::clamp<double>(light, 0, 1);
+        return std::round(255 * (x <= 0.0031308 ? 12.92 * x : 1.055 * std::pow(x, 1 / 2.4) - 0.055));
+    }
+    static int largest_code_difference(const Image& a, const Image& b) {
+        double largest = 0;
+        for (std::size_t i = 0; i < a.values.size(); ++i)
+            largest = std::max(largest, std::abs(code_of(a.values[i]) - code_of(b.values[i])));
+        return static_cast<int>(largest);
+    }
+
+    Planner planner_;
+    Runner runner_;
+};
+
+/// Inputs of which each lacks something that an effect could be called for by.
+std::vector<Named<Input>> poor_inputs() {
+    const std::vector<std::string> all = {"depth", "normal", "emission", "ambient"};
+    const Input ordinary = ordinary_input(all, size);
+    std::vector<Named<Input>> inputs = {{"ordinary", ordinary}};
+    Input dark = ordinary;
+    for (float& value : dark.color.values)
+        value *= 0.1f;
+    inputs.push_back({"dark", dark});
+    Input unlit = ordinary;
+    fill(unlit.attachments.at("ambient"), 0);
+    fill(unlit.attachments.at("emission"), 0);
+    inputs.push_back({"no ambient light, no emitter", unlit});
+    Input empty = ordinary;
+    fill(empty.attachments.at("depth"), static_cast<float>(empty.camera.sky_depth));
+    fill(empty.attachments.at("normal"), 0);
+    inputs.push_back({"only sky", empty});
+    Input wall = ordinary;
+    wall.camera.focus_distance = 3;
+    fill(wall.attachments.at("depth"), static_cast<float>(wall.camera.depth_at(3.001)));
+    inputs.push_back({"a wall in focus", wall});
+    // A corner out of focus, the rest a wall in focus.
+    Input corner = wall;
+    for (int y = 0; y < size.height / 3; ++y) {
+        for (int x = 0; x < size.width / 4; ++x)
+            corner.attachments.at("depth").at(x, y, 0) =
+                static_cast<float>(corner.camera.depth_at(0.4 + 0.1 * x));
+    }
+    inputs.push_back({"a corner out of focus", corner});
+    return inputs;
+}
+
+const std::vector<Named<Input>>& inputs() {
+    static const std::vector<Named<Input>> made = [] {
+        std::vector<Named<Input>> list = poor_inputs();
+        for (const std::string& name : RenderedScene::names())
+            list.push_back({name, RenderedScene(name).input(size)});
+        return list;
+    }();
+    return made;
+}
+
+double random_value(const ParameterInfo& parameter, std::mt19937& random) {
+    const double share = static_cast<double>(random() >> 8) / 16777216.0;
+    switch (random() % 6) {
+    case 0:
+        return parameter.minimum;
+    case 1:
+        return parameter.identity.value_or(parameter.maximum);
+    case 2:
+    case 3:
+        return parameter.default_value[0];
+    default:
+        break;
+    }
+    if (parameter.logarithmic && parameter.minimum > 0) {
+        return parameter.minimum * std::pow(parameter.maximum / parameter.minimum, share);
+    }
+    return parameter.minimum + share * (parameter.maximum - parameter.minimum);
+}
+
+/// Effects that work on scene light in any order, then perhaps a tone map, then those for display light.
+Chain random_chain(const Catalog& effects, std::mt19937& random) {
+    Chain chain;
+    for (const char* stage : {"scene", "scene_to_display", "display"}) {
+        std::vector<EffectPtr> fitting;
+        for (const EffectPtr& effect : effects.effects()) {
+            if (effect->stage == stage) fitting.push_back(effect);
+        }
+        std::shuffle(fitting.begin(), fitting.end(), random);
+        const std::size_t most = std::string_view(stage) == "scene" ? 4 : 1;
+        const std::size_t count = fitting.empty() ? 0 : random() % (std::min(most, fitting.size()) + 1);
+        for (std::size_t i = 0; i < count; ++i) {
+            ChainEntry& entry = chain.add(effects, fitting[i]->id);
+            for (const ParameterInfo& parameter : entry.effect->parameters)
+                entry.set(parameter.id, random_value(parameter, random));
+        }
+    }
+    return chain;
+}
+
+std::string text_of(const Chain& chain) {
+    std::string text;
+    for (const ChainEntry& entry : chain.entries) {
+        text += entry.name + " {";
+        for (std::size_t i = 0; i < entry.values.size(); ++i)
+            text +=
+                fmt::format("{}{}: {}", i ? ", " : "", entry.effect->parameters[i].id, entry.values[i][0]);
+        text += "}; ";
+    }
+    return text;
+}
+
+Chain alone(const Catalog& effects, const std::string& id) {
+    Chain chain;
+    chain.add(effects, id);
+    return chain;
+}
+
+} // namespace
+
+TEST_CASE("with its defaults, every effect at every level may be skipped where it is") {
+    Court court;
+    for (const EffectPtr& effect : catalog().effects()) {
+        Chain chain = alone(catalog(), effect->id);
+        const int levels = std::max<int>(1, static_cast<int>(effect->levels.size()));
+        for (int level = 0; level < levels; ++level) {
+            // The slow levels share all of this but the shader: where they are not the default, on fewer inputs.
+            const std::size_t every = is_long() || level == effect->default_level ? 1 : 3;
+            chain.entries.front().level = level;
+            for (std::size_t i = 0; i < inputs().size(); i += every) {
+                const auto& [name, input] = inputs()[i];
+                const std::string problem = court.check(chain, input);
+                if (!problem.empty())
+                    FAIL_CHECK(effect->id << ", level " << level << ", " << name << ": " << problem);
+            }
+        }
+    }
+    court.print("defaults");
+    CHECK(court.tally["scene exact"] > 0);
+    CHECK(court.tally["frame exact"] > 0);
+    CHECK(court.tally["tile"] > 0);
+}
+
+TEST_CASE("at each of its identities an effect that runs all the same changes nothing") {
+    Court court;
+    for (const EffectPtr& effect : catalog().effects()) {
+        for (const ParameterInfo& parameter : effect->parameters) {
+            if (!parameter.identity) continue;
+            Chain chain = alone(catalog(), effect->id);
+            chain.entries.front().set(parameter.id, *parameter.identity);
+            for (const auto& [name, input] : inputs()) {
+                const std::string problem = court.check(chain, input);
+                if (!problem.empty())
+                    FAIL_CHECK(effect->id << ", " << parameter.id << ", " << name << ": " << problem);
+            }
+        }
+    }
+    court.print("identities");
+    CHECK(court.tally["configuration exact"] == court.cases);
+}
+
+TEST_CASE("random chains, skipping and not, give the same picture") {
+    std::mt19937 random(random_seed);
+    Court court;
+    constexpr int chains = 500;
+    for (int i = 0; i < chains; ++i) {
+        const Chain chain = random_chain(catalog(), random);
+        const auto& [name, input] = inputs()[random() % inputs().size()];
+        const std::string problem = court.check(chain, input);
+        if (!problem.empty()) FAIL_CHECK("chain " << i << ", " << name << ", " << text_of(chain) << problem);
+    }
+    court.print(fmt::format("random chains, seed {}", random_seed));
+}
+
+TEST_CASE("on either side of each threshold the picture is what all would give") {
+    Court court;
+    int thresholds = 0;
+    const auto is_skipped = [&](const Chain& chain, const Input& input) -> std::optional<bool> {
+        const auto outcome = court.run(chain, input, Skip::exact);
+        if (!outcome) return std::nullopt;
+        return outcome->report.effects.front().status == EffectStatus::skipped;
+    };
+    for (const EffectPtr& effect : catalog().effects()) {
+        for (const ParameterInfo& parameter : effect->parameters) {
+            if (parameter.kind != ParameterKind::number) continue;
+            for (const auto& [name, input] : poor_inputs()) {
+                Chain chain = alone(catalog(), effect->id);
+                const auto at = [&](double value) {
+                    chain.entries.front().set(parameter.id, value);
+                    return is_skipped(chain, input);
+                };
+                double low = parameter.minimum, high = parameter.maximum;
+                const auto at_low = at(low), at_high = at(high);
+                if (!at_low || !at_high || *at_low == *at_high) continue;
+                for (int i = 0; i < 60 && std::nextafter(low, high) != high; ++i) {
+                    const double middle = low + (high - low) / 2;
+                    const auto found = at(middle);
+                    if (!found) break;
+                    (*found == *at_low ? low : high) = middle;
+                }
+                ++thresholds;
+                for (const double value : {low, high}) {
+                    chain.entries.front().set(parameter.id, value);
+                    const std::string problem = court.check(chain, input);
+                    if (!problem.empty()) {
+                        FAIL_CHECK(effect->id << ", " << parameter.id << " = " << value << ", " << name
+                                              << ": " << problem);
+                    }
+                }
+            }
+        }
+    }
+    court.print(fmt::format("{} thresholds", thresholds));
+    CHECK(thresholds > 0);
+}
+
+TEST_CASE("effects that lie about being called for are found out") {
+    Catalog liars;
+    liars.load(std::string(POSTFX_FIXTURES) + "/postfx_fixture_liars.so");
+    REQUIRE(liars.effects().size() == 5);
+    Court court;
+    for (const EffectPtr& liar : liars.effects()) {
+        CAPTURE(liar->id);
+        CHECK(!court.check(alone(liars, liar->id), inputs().front().thing).empty());
+    }
+}
