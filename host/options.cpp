@@ -35,6 +35,7 @@ void ChainOptions::declare(CLI::App& app) {
         ->type_name("YAML")
         ->default_str("")
         ->allow_extra_args(false);
+    app.add_flag("--run-all", run_all_, "Run every enabled effect, called for or not");
     app.footer(default_chain_.empty() ? ""
                                       : "Without --chain and --effect the chain is " + default_chain_ + ".");
 }
@@ -45,6 +46,7 @@ Chain ChainOptions::read(const Catalog& catalog) const {
     if (!name.empty()) chain = read_chain_named(name, catalog);
     for (const std::string& effect : effects_)
         parse_chain_entry(effect, "--effect", catalog, chain);
+    if (run_all_) chain.skip = Skip::nothing;
     return chain;
 }
 

@@ -22,7 +22,7 @@ private:
     std::vector<std::string> plugin_directories_;
 };
 
-/// --chain and --effect: which effects are used.
+/// --chain and --effect: which effects are used; --run-all: whether called for or not.
 class ChainOptions {
 public:
     /// `default_chain` is used when neither option is given.
@@ -30,6 +30,7 @@ public:
     void declare(CLI::App& app);
     /// Was any of the two given?
     bool given() const { return !chain_.empty() || !effects_.empty(); }
+    bool run_all() const { return run_all_; }
     /// The chain file's effects, then those of --effect in order.
     Chain read(const Catalog& catalog) const;
 
@@ -37,6 +38,7 @@ private:
     std::string default_chain_;
     std::string chain_;
     std::vector<std::string> effects_;
+    bool run_all_ = false;
 };
 
 /// A chain by its file or its name in configs/chains/; it may include those that are there.

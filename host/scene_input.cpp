@@ -1,6 +1,5 @@
 #include "scene_input.hpp"
 
-#include "options.hpp"
 #include "resources.hpp"
 
 namespace postfx::host {
@@ -18,16 +17,25 @@ Scene SceneOptions::open() const {
     return open_scene(default_scene_.empty() ? scene_ : default_scene_, data_directory() / "configs/scenes");
 }
 
-Facts SceneOptions::facts(const Scene& scene, double time, Output output) const {
-    const Size size = parse_size(size_);
+Facts SceneOptions::facts(const Scene& scene, ViewBounds& bounds, Output output) const {
+    Facts facts = facts_of(scene, bounds, parse_size(size_), time_, output);
+    facts.fuse = !no_fuse_;
+    return facts;
+}
+
+Facts facts_of(const Scene& scene, ViewBounds& bounds, Size size, double time, Output output) {
     Facts facts;
     facts.width = size.width;
     facts.height = size.height;
-    facts.camera = scene.camera_at(time);
     facts.attachments = SceneRenderer::attachment_names();
     facts.output = output;
-    facts.fuse = !no_fuse_;
+    look(facts, bounds, scene.camera_at(time), time);
     return facts;
+}
+
+void look(Facts& facts, ViewBounds& bounds, const Camera& camera, double time) {
+    facts.camera = camera;
+    facts.scene = bounds.at(time, camera, facts.width, facts.height);
 }
 
 Textures textures_of(const SceneFrame& frame) {

@@ -1,10 +1,12 @@
 // SCENE on the command line, with what goes along with it.
 #pragma once
 
+#include "options.hpp"
 #include "picture.hpp"
 
 #include "scene/renderer.hpp"
 #include "scene/scene.hpp"
+#include "scene/view_bounds.hpp"
 
 #include <postfx/plan.hpp>
 
@@ -23,8 +25,8 @@ public:
     Scene open() const;
     double time() const { return time_; }
 
-    /// What is known of a picture of the scene before it is drawn.
-    Facts facts(const Scene& scene, double time, Output output) const;
+    /// What is known of a picture of the scene at its time before it is drawn.
+    Facts facts(const Scene& scene, ViewBounds& bounds, Output output) const;
 
 private:
     std::string default_scene_, scene_;
@@ -32,6 +34,12 @@ private:
     double time_ = 0;
     bool no_fuse_ = false;
 };
+
+/// What is known of a picture by a scene's own camera before it is drawn.
+Facts facts_of(const Scene& scene, ViewBounds& bounds, Size size, double time, Output output);
+
+/// Put another camera into the facts, with what it can see of the scene at that time.
+void look(Facts& facts, ViewBounds& bounds, const Camera& camera, double time);
 
 /// The frame's textures by attachment name.
 Textures textures_of(const SceneFrame& frame);

@@ -38,4 +38,17 @@ std::string wrapped(const std::string& text, int indent, int width) {
     return line.empty() ? lines : lines + start + line + "\n";
 }
 
+std::string markdown_cell(std::string text) {
+    for (std::size_t at = text.find('|'); at != std::string::npos; at = text.find('|', at + 2))
+        text.insert(at, 1, '\\');
+    return text;
+}
+
+std::string markdown_row(const std::vector<std::string>& cells) {
+    std::string line = "|";
+    for (const std::string& cell : cells)
+        line.append(cell.empty() ? "" : " ").append(cell).append(" |");
+    return line.append("\n");
+}
+
 } // namespace postfx::host

@@ -1,4 +1,4 @@
-// Plain text for the terminal: aligned columns, wrapped lines.
+// Text for people: aligned columns and wrapped lines for the terminal, cells of Markdown tables.
 #pragma once
 
 #include <string>
@@ -13,5 +13,11 @@ std::string text_table(const std::vector<std::vector<std::string>>& rows, int in
 /// `text` broken at spaces into lines of at most `width` characters, each starting with `indent` spaces. A
 /// longer word stays whole.
 std::string wrapped(const std::string& text, int indent, int width = 100);
+
+/// A cell of a Markdown table.
+std::string markdown_cell(std::string text);
+
+/// "| a | b |\n" of cells that are Markdown already.
+std::string markdown_row(const std::vector<std::string>& cells);
 
 } // namespace postfx::host

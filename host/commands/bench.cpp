@@ -1,12 +1,11 @@
 // postfx bench: what chains cost, measured alternately in one run and told in copy passes.
 #include "command.hpp"
 #include "gl_session.hpp"
+#include "measure.hpp"
 #include "options.hpp"
 #include "picture.hpp"
 #include "scene_input.hpp"
 
-#include <gl/clock.hpp>
-#include <gl/objects.hpp>
 #include <image/metrics.hpp>
 
 #include <fmt/format.h>
@@ -14,80 +13,14 @@
 
 #include <algorithm>
 #include <fstream>
-#include <functional>
 #include <iterator>
-#include <random>
 
 namespace postfx::host {
 namespace {
 
-constexpr int warm_up_rounds = 3;
-
-/// Something to measure, with its samples.
-struct Case {
-    std::string name;
-    std::function<void()> draw;
-    std::vector<double> cpu_ms, wall_ms, gpu_ms;
-};
-
-double quantile(std::vector<double> samples, double share) {
-    if (samples.empty()) return 0;
-    const auto at =
-        samples.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(samples.size() - 1));
-    std::nth_element(samples.begin(), at, samples.end());
-    return *at;
-}
-
 nlohmann::ordered_json spread(const std::vector<double>& samples) {
-    return {
-        {"median", quantile(samples, 0.5)}, {"p10", quantile(samples, 0.1)}, {"p90", quantile(samples, 0.9)}};
+    return {{"median", median(samples)}, {"p10", quantile(samples, 0.1)}, {"p90", quantile(samples, 0.9)}};
 }
-
-/// A full-screen pass with a fragment shader of its own: the unit of account, and hand-written rivals.
-/// The shader samples `u_color` at binding 0 (nearest) or `u_color_linear` at binding 1.
-class PlainPass {
-public:
-    PlainPass(int width, int height, Format format, const std::string& fragment, const std::string& name)
-        : target_(width, height, format), framebuffer_(gl::make_framebuffer({target_.name()})),
-          program_(
-              gl::make_program("#version 450 core\nvoid main() { gl_Position = vec4(gl_VertexID == 1 ? 3.0 : "
-                               "-1.0, gl_VertexID == 2 ? 3.0 : -1.0, 0.0, 1.0); }",
-                               fragment, name, {name})),
-          vertex_array_(gl::make_vertex_array()), nearest_(gl::make_sampler(false)),
-          linear_(gl::make_sampler(true)) {}
-
-    void draw(GLuint color) const {
-        glDisable(GL_DEPTH_TEST);
-        glDisable(GL_BLEND);
-        glBindFramebuffer(GL_DRAW_FRAMEBUFFER, framebuffer_.name());
-        glViewport(0, 0, target_.width(), target_.height());
-        glUseProgram(program_.name());
-        glBindVertexArray(vertex_array_.name());
-        glBindTextureUnit(0, color);
-        glBindSampler(0, nearest_.name());
-        glBindTextureUnit(1, color);
-        glBindSampler(1, linear_.name());
-        glDrawArrays(GL_TRIANGLES, 0, 3);
-        glBindSampler(0, 0);
-        glBindSampler(1, 0);
-    }
-    Image picture() const {
-        return gl::read_texture(target_.name(), target_.width(), target_.height(), target_.format());
-    }
-
-private:
-    gl::Texture target_;
-    gl::Framebuffer framebuffer_;
-    gl::Program program_;
-    gl::VertexArray vertex_array_;
-    gl::Sampler nearest_, linear_;
-};
-
-constexpr const char* copy_shader =
-    "#version 450 core\n"
-    "layout(binding = 0) uniform sampler2D u_color;\n"
-    "layout(location = 0) out vec4 o_color;\n"
-    "void main() { o_color = texelFetch(u_color, ivec2(gl_FragCoord.xy), 0); }\n";
 
 std::string read_text(const std::string& file) {
     std::ifstream stream(file, std::ios::binary);
@@ -114,9 +47,12 @@ public:
         app.add_flag("--unfused", unfused_, "Measure every chain without fusion as well");
         app.add_flag("--live", live_,
                      "Measure every chain with its values in uniforms as well, as while they are moved");
+        app.add_flag("--run-all", run_all_,
+                     "Measure every chain with every enabled effect run, called for or not, as well");
         app.add_flag("--watch-nonfinite", watch_, "Measure every chain while it is watched for NaN as well");
         app.add_flag("--passes", passes_, "Tell every pass of the chains as well");
-        app.add_flag("--with-scene", with_scene_, "Draw the scene in every sample, as a frame would");
+        app.add_flag("--with-scene", with_scene_,
+                     "Draw the scene in every sample, as a frame would, with what the chain reads");
         app.add_option("--samples", samples_, "Rounds; each measures everything once, in random order")
             ->check(CLI::Range(3, 100000))
             ->capture_default_str();
@@ -131,21 +67,26 @@ public:
     Status run() override {
         const Catalog catalog = catalog_options_.load();
         const Scene scene = scene_options_.open();
-        facts_ =
-            scene_options_.facts(scene, scene_options_.time(), linear_ ? Output::linear : Output::display);
+        ViewBounds bounds(scene);
+        facts_ = scene_options_.facts(scene, bounds, linear_ ? Output::linear : Output::display);
         facts_.working_format = *format_by_name(format_);
         facts_.fold = true;
         const GlSession session;
-        SceneRenderer renderer(scene);
+        SceneRenderers scenes(scene, facts_.width, facts_.height, scene_options_.time());
         make_runners(catalog);
-        const std::vector<std::string> wanted = wanted_attachments();
-        const auto draw_scene = [&] {
-            return textures_of(renderer.render(facts_.width, facts_.height, scene_options_.time(), wanted));
-        };
-        const Textures textures = draw_scene();
+        textures_ = textures_of(scenes.draw(wanted_attachments()));
+        frame_.camera = facts_.camera;
+        frame_.time = scene_options_.time();
 
-        std::vector<Case> cases = make_cases(textures, draw_scene);
-        measure(cases);
+        std::vector<Case> cases = make_cases(scenes);
+        {
+            ProgressBar progress("measuring", samples_ + warm_up_rounds);
+            measure(cases, samples_, progress, [this] {
+                if (passes_) measure_passes();
+            });
+        }
+        for (Case& row : pass_rows_)
+            cases.push_back(std::move(row));
         tell(cases, gl::check_clock(), session.device());
         return Status::success;
     }
@@ -159,15 +100,19 @@ private:
     void make_runners(const Catalog& catalog) {
         if (chains_.empty()) chains_.emplace_back("cinematic");
         for (const std::string& name : chains_) {
-            const Chain chain = read_chain_named(name, catalog);
-            runners_.push_back({name, std::make_unique<ChainRunner>(chain, facts_)});
+            Chain chain = read_chain_named(name, catalog);
+            const auto add = [&](const std::string& variant, const Facts& facts) {
+                runners_.push_back({name + variant, std::make_unique<ChainRunner>(chain, facts)});
+            };
+            add("", facts_);
             Facts other = facts_;
             other.fuse = false;
-            if (unfused_)
-                runners_.push_back({name + " (unfused)", std::make_unique<ChainRunner>(chain, other)});
+            if (unfused_) add(" (unfused)", other);
             other = facts_;
             other.fold = false;
-            if (live_) runners_.push_back({name + " (live)", std::make_unique<ChainRunner>(chain, other)});
+            if (live_) add(" (live)", other);
+            chain.skip = Skip::nothing;
+            if (run_all_) add(" (run all)", facts_);
         }
     }
 
@@ -181,59 +126,54 @@ private:
         return wanted;
     }
 
-    template<class DrawScene>
-    std::vector<Case> make_cases(const Textures& textures, const DrawScene& draw_scene) {
-        const auto framed = [this, draw_scene](std::function<void()> draw) -> std::function<void()> {
-            if (!with_scene_) return draw;
-            return [draw_scene, draw] {
-                draw_scene();
-                draw();
-            };
-        };
-        const GLuint color = textures.at("color");
+    std::vector<Case> make_cases(SceneRenderers& scenes) {
+        const GLuint color = textures_.at("color");
         std::vector<Case> cases;
-        const auto plain = [&](Format format, const std::string& text, const std::string& name) {
-            const auto pass = std::make_shared<PlainPass>(facts_.width, facts_.height, format, text, name);
-            return std::function<void()>([pass, color] { pass->draw(color); });
+        const auto pass_of = [this](Format format, const std::string& fragment, const std::string& name) {
+            return std::make_shared<PlainPass>(facts_.width, facts_.height, format, fragment, name);
         };
-        cases.push_back({"copy pass", plain(facts_.working_format, copy_shader, "copy pass"), {}, {}, {}});
-        if (with_scene_) cases.push_back({"scene alone", framed([] {}), {}, {}, {}});
+        const auto copy =
+            std::make_shared<PlainPass>(PlainPass::copy(facts_.width, facts_.height, facts_.working_format));
+        cases.push_back({"copy pass", [copy, color] { copy->draw(color); }});
+        if (with_scene_) cases.push_back(framed({"scene alone", [] {}}, scenes, {}));
         for (const std::string& rival : rivals_) {
-            const Format format = linear_ ? facts_.working_format : Format::rgba8;
             const auto pass =
-                std::make_shared<PlainPass>(facts_.width, facts_.height, format, read_text(rival), rival);
-            cases.push_back({rival, framed([pass, color] { pass->draw(color); }), {}, {}, {}});
-            compare_with_rival(*pass, rival, textures);
+                pass_of(linear_ ? facts_.working_format : Format::rgba8, read_text(rival), rival);
+            cases.push_back(framed({rival, [pass, color] { pass->draw(color); }}, scenes, {}));
+            compare_with_rival(*pass, rival);
         }
-        FrameInputs frame;
-        frame.camera = facts_.camera;
-        frame.time = scene_options_.time();
         for (const NamedRunner& named : runners_) {
             ChainRunner* runner = named.runner.get();
+            const Textures textures =
+                with_scene_ ? textures_of(scenes.draw(runner->attachments())) : textures_;
             const auto add = [&](const std::string& name, Watch watch) {
-                cases.push_back({name,
-                                 framed([runner, textures, frame, watch] {
-                                     runner->run(textures, frame, Timing::off, watch);
-                                 }),
-                                 {},
-                                 {},
-                                 {}});
+                Case drawn{name, [this, runner, textures, watch] {
+                               runner->run(textures, frame_, Timing::off, watch);
+                           }};
+                drawn.texture_bytes = runner->plan().texture_bytes();
+                cases.push_back(framed(std::move(drawn), scenes, runner->attachments()));
             };
             add(named.name, Watch::off);
             if (watch_) add(named.name + " (watched)", Watch::nonfinite);
         }
-        if (passes_) frame_ = frame;
-        textures_ = textures;
         return cases;
     }
 
+    /// With --with-scene the same behind the scene, drawn with these attachments.
+    Case framed(Case drawn, SceneRenderers& scenes, const std::vector<std::string>& attachments) const {
+        if (!with_scene_) return drawn;
+        drawn.texture_bytes += scenes.draw(attachments).texture_bytes;
+        drawn.draw = [&scenes, attachments, draw = std::move(drawn.draw)] {
+            scenes.draw(attachments);
+            draw();
+        };
+        return drawn;
+    }
+
     /// A rival that draws another picture measures nothing: tell how far it is from the first chain's.
-    void compare_with_rival(const PlainPass& pass, const std::string& name, const Textures& textures) {
-        FrameInputs frame;
-        frame.camera = facts_.camera;
-        frame.time = scene_options_.time();
-        pass.draw(textures.at("color"));
-        runners_.front().runner->run(textures, frame, Timing::off);
+    void compare_with_rival(const PlainPass& pass, const std::string& name) {
+        pass.draw(textures_.at("color"));
+        runners_.front().runner->run(textures_, frame_, Timing::off);
         const Difference difference =
             compare(pass.picture(), runners_.front().runner->executor().read_picture());
         const std::size_t pixels = static_cast<std::size_t>(facts_.width) * facts_.height;
@@ -243,50 +183,13 @@ private:
                         100.0 * static_cast<double>(difference.differing) / static_cast<double>(pixels)));
     }
 
-    void measure(std::vector<Case>& cases) {
-        std::mt19937 random(1);
-        std::vector<std::size_t> order(cases.size());
-        for (std::size_t i = 0; i < order.size(); ++i)
-            order[i] = i;
-        gl::Query query = make_query();
-        ProgressBar progress("measuring", samples_ + warm_up_rounds);
-        for (int round = -warm_up_rounds; round < samples_; ++round) {
-            std::shuffle(order.begin(), order.end(), random);
-            for (std::size_t i : order) {
-                glFinish();
-                const gl::HostTime start = gl::HostTime::now();
-                glBeginQuery(GL_TIME_ELAPSED, query.name());
-                cases[i].draw();
-                glEndQuery(GL_TIME_ELAPSED);
-                glFinish();
-                const gl::HostTime end = gl::HostTime::now();
-                if (round < 0) continue;
-                GLuint64 elapsed_ns = 0;
-                glGetQueryObjectui64v(query.name(), GL_QUERY_RESULT, &elapsed_ns);
-                cases[i].cpu_ms.push_back(end.cpu_ms - start.cpu_ms);
-                cases[i].wall_ms.push_back(end.wall_ms - start.wall_ms);
-                cases[i].gpu_ms.push_back(static_cast<double>(elapsed_ns) * 1e-6);
-            }
-            if (passes_ && round >= 0) measure_passes();
-            progress.advance();
-        }
-        for (Case& row : pass_rows_)
-            cases.push_back(std::move(row));
-    }
-
-    static gl::Query make_query() {
-        GLuint name = 0;
-        glCreateQueries(GL_TIME_ELAPSED, 1, &name);
-        return gl::Query(name);
-    }
-
     void measure_passes() {
         std::size_t row = 0;
         for (const NamedRunner& named : runners_) {
             named.runner->run(textures_, frame_, Timing::profile);
             for (const PassReport& pass : named.runner->executor().report().passes) {
                 if (row == pass_rows_.size()) {
-                    pass_rows_.push_back({fmt::format("{}: {}", named.name, pass.name), {}, {}, {}, {}});
+                    pass_rows_.push_back({fmt::format("{}: {}", named.name, pass.name), {}});
                 }
                 pass_rows_[row].cpu_ms.push_back(*pass.cpu_ms);
                 pass_rows_[row].wall_ms.push_back(*pass.wall_ms);
@@ -298,7 +201,7 @@ private:
     void tell(const std::vector<Case>& cases, const gl::ClockCheck& clock,
               const gl::DeviceInfo& device) const {
         const bool gpu = clock.timer_queries_honest;
-        const auto unit_of = [&](const Case& row) { return quantile(gpu ? row.gpu_ms : row.cpu_ms, 0.5); };
+        const auto unit_of = [&](const Case& row) { return median(row.times(gpu)); };
         const double copy = unit_of(cases.front());
         const std::string clock_text = gpu ? clock.text : "CPU time of all threads; " + clock.text;
         if (json_) {
@@ -312,6 +215,8 @@ private:
                     {"name", row.name}, {"cpu_ms", spread(row.cpu_ms)}, {"wall_ms", spread(row.wall_ms)}};
                 if (gpu && !row.gpu_ms.empty()) item["gpu_ms"] = spread(row.gpu_ms);
                 item["copies"] = unit_of(row) / copy;
+                item["texture_bytes"] = nullptr;
+                if (row.texture_bytes > 0) item["texture_bytes"] = row.texture_bytes;
                 json["rows"].push_back(std::move(item));
             }
             fmt::print("{}\n", json.dump(2));
@@ -320,14 +225,16 @@ private:
         std::size_t width = 4;
         for (const Case& row : cases)
             width = std::max(width, row.name.size());
-        fmt::print("{}x{} {}, {} rounds on {}\nclock: {}\n\n{:<{}}  {:>9}  {:>19}  {:>9}  {:>7}\n",
+        fmt::print("{}x{} {}, {} rounds on {}\nclock: {}\n\n{:<{}}  {:>9}  {:>19}  {:>9}  {:>7}  {:>12}\n",
                    facts_.width, facts_.height, format_, samples_, device.renderer, clock_text, "", width,
-                   gpu ? "gpu ms" : "cpu ms", "p10 - p90", "wall ms", "copies");
+                   gpu ? "gpu ms" : "cpu ms", "p10 - p90", "wall ms", "copies", "textures MiB");
         for (const Case& row : cases) {
-            const std::vector<double>& times = gpu && !row.gpu_ms.empty() ? row.gpu_ms : row.cpu_ms;
-            fmt::print("{:<{}}  {:9.2f}  {:>8.2f} - {:<8.2f}  {:9.2f}  {:7.2f}\n", row.name, width,
-                       quantile(times, 0.5), quantile(times, 0.1), quantile(times, 0.9),
-                       quantile(row.wall_ms, 0.5), unit_of(row) / copy);
+            const std::vector<double>& times = row.times(gpu);
+            const std::string mebibytes =
+                row.texture_bytes > 0 ? mebibytes_text(static_cast<std::int64_t>(row.texture_bytes)) : "";
+            fmt::print("{:<{}}  {:9.2f}  {:>8.2f} - {:<8.2f}  {:9.2f}  {:7.2f}  {:>12}\n", row.name, width,
+                       median(times), quantile(times, 0.1), quantile(times, 0.9), median(row.wall_ms),
+                       unit_of(row) / copy, mebibytes);
         }
         for (const std::string& note : rival_notes_)
             fmt::print("{}\n", note);
@@ -339,7 +246,7 @@ private:
     std::string format_ = "rgba16f";
     int samples_ = 21;
     bool unfused_ = false, live_ = false, watch_ = false, passes_ = false, with_scene_ = false,
-         linear_ = false, json_ = false;
+         run_all_ = false, linear_ = false, json_ = false;
 
     Facts facts_;
     FrameInputs frame_;

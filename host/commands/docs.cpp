@@ -3,6 +3,7 @@
 #include "effect_text.hpp"
 #include "options.hpp"
 #include "resources.hpp"
+#include "text_table.hpp"
 
 #include <image/files.hpp>
 
@@ -22,13 +23,6 @@ namespace {
 constexpr std::string_view generated =
     "<!-- Made by `./run docs --out docs/reference` from the code. Not edited by hand. -->\n";
 
-/// A cell of a Markdown table.
-std::string cell(std::string text) {
-    for (std::size_t at = text.find('|'); at != std::string::npos; at = text.find('|', at + 2))
-        text.insert(at, "\\");
-    return text;
-}
-
 std::string code_or_empty(const std::string& text) {
     return text.empty() ? "" : "`" + text + "`";
 }
@@ -38,11 +32,11 @@ std::string parameters_page(const EffectInfo& effect) {
     std::string text =
         "| Parameter | Type | Default | Range | Unit | No effect at | |\n|---|---|---|---|---|---|---|\n";
     for (const ParameterInfo& parameter : effect.parameters) {
-        text +=
-            fmt::format("| `{}` | {} | `{}` | {} | {} | {} | {}{} |\n", parameter.id, parameter.kind_name(),
-                        value_text(parameter, parameter.default_value), cell(range_text(parameter)),
-                        cell(parameter.unit), code_or_empty(identity_text(parameter)), cell(parameter.help),
-                        parameter.constant ? ". Compiled into the shader" : "");
+        text += fmt::format("| `{}` | {} | `{}` | {} | {} | {} | {}{} |\n", parameter.id,
+                            parameter.kind_name(), value_text(parameter, parameter.default_value),
+                            markdown_cell(range_text(parameter)), markdown_cell(parameter.unit),
+                            code_or_empty(identity_text(parameter)), markdown_cell(parameter.help),
+                            parameter.constant ? ". Compiled into the shader" : "");
     }
     return text;
 }
@@ -52,7 +46,8 @@ std::string levels_page(const EffectInfo& effect) {
     std::string text = "\n## Quality levels\n\n| `quality` | |\n|---|---|\n";
     for (const LevelInfo& level : effect.levels) {
         const bool is_default = &level == &effect.levels.at(effect.default_level);
-        text += fmt::format("| `{}`{} | {} |\n", level.id, is_default ? " (default)" : "", cell(level.help));
+        text += fmt::format("| `{}`{} | {} |\n", level.id, is_default ? " (default)" : "",
+                            markdown_cell(level.help));
     }
     return text;
 }
@@ -86,7 +81,7 @@ std::string index_page(const Catalog& catalog) {
             "## Effects\n\n| Effect | Stage | |\n|---|---|---|\n";
     for (const EffectPtr& effect : catalog.effects()) {
         text += fmt::format("| [{0}](effects/{0}.md) | {1} | {2} |\n", effect->id, effect->stage,
-                            cell(effect->help));
+                            markdown_cell(effect->help));
     }
     return text;
 }

@@ -1,13 +1,18 @@
-// postfx explain: the plan, without drawing anything.
+// postfx explain: the plan, without drawing anything; with --measure, what the frame decides and what skipping saves.
 #include "command.hpp"
+#include "gl_session.hpp"
 #include "options.hpp"
 #include "picture.hpp"
 #include "scene_input.hpp"
+#include "skipping.hpp"
 
 #include <postfx/postfx.hpp>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
 
 namespace postfx::host {
 namespace {
@@ -21,16 +26,29 @@ public:
         app.add_option("-o,--output", output_, "Plan for this file's kind: .png for display, others linear")
             ->capture_default_str()
             ->type_name("FILE");
+        app.add_flag("--measure", measure_,
+                     "Draw scene and chain in turns with what --run-all does, and tell what skipping saves");
+        app.add_option("--samples", samples_, "Rounds of --measure; each draws both once")
+            ->check(CLI::Range(3, 100000))
+            ->capture_default_str();
         app.add_flag("--json", json_, "As JSON");
         app.add_option("--shader", shader_, "Print the generated shader of this pass instead")
             ->type_name("PASS");
     }
 
     Status run() override {
+        if (measure_ && chain_options_.run_all())
+            throw Error("--measure compares with --run-all: give one of them");
+        if (measure_ && !shader_.empty()) throw Error("--shader prints nothing else: leave --measure out");
         const Catalog catalog = catalog_options_.load();
         const Chain chain = chain_options_.read(catalog);
         const Scene scene = scene_options_.open();
-        const Facts facts = scene_options_.facts(scene, scene_options_.time(), output_for(output_));
+        ViewBounds bounds(scene);
+        Facts facts = scene_options_.facts(scene, bounds, output_for(output_));
+        if (measure_) {
+            facts.fold = true;
+            return tell_measured(chain, scene, facts);
+        }
         const Plan plan = Planner().plan(chain, facts);
         if (!shader_.empty()) return print_shader(plan);
         Report report = describe(plan);
@@ -45,6 +63,51 @@ public:
     }
 
 private:
+    Status tell_measured(const Chain& chain, const Scene& scene, const Facts& facts) const {
+        const GlSession session;
+        SkippingStudy study(scene, facts, scene_options_.time());
+        study.add("chain", chain);
+        {
+            ProgressBar progress("measuring", samples_ + warm_up_rounds);
+            study.measure(samples_, progress);
+        }
+        const SkippingStudy::Result& result = study.result();
+        const SkippingStudy::Row& row = result.rows.front();
+        if (json_) {
+            nlohmann::ordered_json json = nlohmann::ordered_json::parse(report_json(row.report));
+            json["measured"] = {{"device", session.device().renderer},
+                                {"rounds", result.rounds},
+                                {"copy_ms", result.copy_ms}};
+            json["measured"].update(skipping_json(row, result.copy_ms));
+            fmt::print("{}\n", json.dump(2));
+        } else {
+            fmt::print("{}{}", report_text(row.report), text_of(result, session.device().renderer));
+        }
+        return Status::success;
+    }
+
+    static std::string text_of(const SkippingStudy::Result& result, const std::string& device) {
+        const SkippingStudy::Row& row = result.rows.front();
+        std::string text =
+            fmt::format("\nscene and chain, median of {} rounds on {}\n", result.rounds, device);
+        if (row.same) {
+            return text
+                   + fmt::format(
+                       "  as it is  {:8.2f} ms  {:>7} MiB\nnothing is skipped: --run-all is the same\n",
+                       row.as_is.ms, mebibytes_text(static_cast<std::int64_t>(row.as_is.texture_bytes)));
+        }
+        for (const auto& [name, frame] :
+             {std::pair{"as it is", &row.as_is}, std::pair{"run all", &row.run_all}}) {
+            text += fmt::format("  {:<8}  {:8.2f} ms  {:>7} MiB  reads {}\n", name, frame->ms,
+                                mebibytes_text(static_cast<std::int64_t>(frame->texture_bytes)),
+                                fmt::join(frame->attachments, ", "));
+        }
+        return text
+               + fmt::format("skipping saves {:.2f} ms ({:.2f} to {:.2f}; {:.1f} copies) and {} MiB\n",
+                             row.saved_ms, row.saved_p10, row.saved_p90, row.saved_ms / result.copy_ms,
+                             mebibytes_text(row.saved_bytes()));
+    }
+
     Status print_shader(const Plan& plan) const {
         std::vector<std::string> names;
         for (const Pass& pass : plan.passes) {
@@ -65,7 +128,8 @@ private:
     ChainOptions chain_options_{"cinematic"};
     CatalogOptions catalog_options_;
     std::string output_ = "picture.png", shader_;
-    bool json_ = false;
+    int samples_ = 21;
+    bool json_ = false, measure_ = false;
 };
 
 const Register<ExplainCommand> registered("explain", "Tell what a chain would do, and why");

@@ -68,7 +68,8 @@ public:
         const Catalog catalog = catalog_options_.load();
         Chain chain = chain_options_.read(catalog);
         const Scene scene = scene_options_.open();
-        Facts facts = scene_options_.facts(scene, scene_options_.time(), output);
+        ViewBounds bounds(scene);
+        Facts facts = scene_options_.facts(scene, bounds, output);
         facts.working_format = *format_by_name(working_);
         facts.fold = frames_ == 1; // a moving camera would make new programs for every frame
         check_parent(output_);
@@ -78,7 +79,7 @@ public:
         SceneRenderer renderer(scene, {.samples = samples_});
         ProgressBar progress("rendering", frames_);
         for (int i = 0; i < frames_; ++i) {
-            render_frame(renderer, runner, scene, i);
+            render_frame(renderer, runner, bounds, i);
             progress.advance();
         }
         const fs::path told = frames_ == 1 ? fs::path(output_) : numbered(output_, frames_ - 1, frames_);
@@ -87,14 +88,14 @@ public:
     }
 
 private:
-    void render_frame(SceneRenderer& renderer, ChainRunner& runner, const Scene& scene, int index) {
+    void render_frame(SceneRenderer& renderer, ChainRunner& runner, ViewBounds& bounds, int index) {
         FrameInputs frame;
         frame.time = scene_options_.time() + index / fps_;
         frame.frame = static_cast<std::uint32_t>(index);
         frame.seed = seed_;
         if (index > 0) {
             Facts facts = runner.facts();
-            facts.camera = scene.camera_at(frame.time);
+            look(facts, bounds, renderer.scene().camera_at(frame.time), frame.time);
             runner.replan(facts);
         }
         const Facts& facts = runner.facts();

@@ -85,7 +85,8 @@ public:
         const Catalog catalog = catalog_options_.load();
         Chain chain = chain_options_.read(catalog);
         const Scene scene = scene_options_.open();
-        Facts facts = scene_options_.facts(scene, scene_options_.time(), Output::display);
+        ViewBounds bounds(scene);
+        Facts facts = scene_options_.facts(scene, bounds, Output::display);
         if (!output_.empty() && output_for(output_) != Output::display) {
             throw Error(Place{.file = output_}, "the window's picture is for display: name a .png");
         }
@@ -93,14 +94,15 @@ public:
         ChainRunner runner(std::move(chain), facts);
         SceneRenderer renderer(scene);
         fmt::print("{}", help);
-        loop(window, runner, renderer, scene);
+        loop(window, runner, renderer, bounds);
         if (!output_.empty()) write_picture(runner, output_, false);
         tell_debug_messages();
         return Status::success;
     }
 
 private:
-    void loop(Window& window, ChainRunner& runner, SceneRenderer& renderer, const Scene& scene) {
+    void loop(Window& window, ChainRunner& runner, SceneRenderer& renderer, ViewBounds& bounds) {
+        const Scene& scene = renderer.scene();
         Presenter presenter;
         FlyCamera pilot(scene.camera_at(scene_options_.time()));
         double scene_time = scene_options_.time();
@@ -116,7 +118,7 @@ private:
             if (size.x > 0 && size.y > 0) {
                 // Until the pilot takes over, the scene's own camera drives.
                 const Camera camera = pilot.moved() ? pilot.camera() : scene.camera_at(scene_time);
-                follow(runner, camera, size);
+                follow(runner, bounds, camera, size, scene_time);
                 FrameInputs inputs;
                 inputs.camera = camera;
                 inputs.time = scene_time;
@@ -132,11 +134,12 @@ private:
         }
     }
 
-    static void follow(ChainRunner& runner, const Camera& camera, glm::ivec2 size) {
+    static void follow(ChainRunner& runner, ViewBounds& bounds, const Camera& camera, glm::ivec2 size,
+                       double time) {
         Facts facts = runner.facts();
-        facts.camera = camera;
         facts.width = size.x;
         facts.height = size.y;
+        look(facts, bounds, camera, time);
         runner.replan(facts);
     }
 

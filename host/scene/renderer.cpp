@@ -14,6 +14,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 namespace postfx::host {
 namespace {
@@ -34,6 +35,10 @@ OutputNames outputs_for(const std::vector<std::string>& wanted) {
     }
     return outputs;
 }
+
+struct MeshPrograms {
+    gl::Program plain, textured; ///< textured only if the scene has textures
+};
 
 /// A frame's part: where it is and how far.
 struct Draw {
@@ -66,6 +71,7 @@ struct SceneRenderer::State {
     }
 
     void prepare(int width, int height, const std::vector<std::string>& wanted);
+    const MeshPrograms& programs_for(const OutputNames& outputs);
     ViewBlock make_view(const Camera& camera, glm::dvec2 shift, int width, int height);
     void add_lights(ViewBlock& view) const;
     void collect(const ViewBlock& view);
@@ -83,7 +89,9 @@ struct SceneRenderer::State {
     gl::VertexArray empty_array;
     gl::Program sky_program, depth_program;
     std::optional<SceneTargets> targets;
-    gl::Program plain_program, textured_program;
+    /// By outputs: what is wanted may change with every frame, and programs take long to make.
+    std::map<OutputNames, MeshPrograms> programs;
+    const MeshPrograms* mesh_programs = nullptr; ///< for the targets' outputs
 
     // Of the frame being drawn; kept so that steady frames allocate nothing.
     std::vector<glm::dmat4> nodes;
@@ -95,21 +103,35 @@ void SceneRenderer::State::prepare(int width, int height, const std::vector<std:
     OutputNames outputs = outputs_for(wanted);
     if (width < 1 || height < 1)
         throw Error(fmt::format("a picture of {}x{} pixels can't be drawn", width, height));
-    const bool same_outputs = targets && targets->outputs() == outputs;
+    const auto is_wanted = [&](const char* name) {
+        return std::find(wanted.begin(), wanted.end(), name) != wanted.end();
+    };
+    // Which sample is nearest is seen in depth.
+    const bool resolve_depth = options.samples > 1 && (is_wanted("depth") || is_wanted("normal"));
+    const bool same_outputs =
+        targets && targets->outputs() == outputs && targets->resolves_depth() == resolve_depth;
     if (same_outputs && targets->width() == width && targets->height() == height) return;
-    if (!same_outputs) {
-        const std::vector<LightCode> lights = shadows.light_codes(scene);
-        plain_program = make_mesh_program(outputs, false, lights);
-        const bool any_textures = std::any_of(scene.materials.begin(), scene.materials.end(),
-                                              [](const Material& material) { return material.textured(); });
-        if (any_textures) textured_program = make_mesh_program(outputs, true, lights);
-    }
-    targets.emplace(width, height, outputs, options.samples);
-    frame.attachments = {{"color", targets->output(0), Format::rgba16f},
-                         {"depth", targets->depth(), Format::depth32f}};
+    mesh_programs = &programs_for(outputs);
+    targets.reset(); // first, so that there is never memory for both
+    targets.emplace(width, height, outputs, options.samples, resolve_depth);
+    frame.attachments = {{"color", targets->output(0), Format::rgba16f}};
+    if (options.samples == 1 || resolve_depth)
+        frame.attachments.push_back({"depth", targets->depth(), Format::depth32f});
+    frame.texture_bytes = targets->bytes();
     for (std::size_t i = 1; i < outputs.size(); ++i) {
         frame.attachments.push_back({outputs[i], targets->output(i), Format::rgba16f});
     }
+}
+
+const MeshPrograms& SceneRenderer::State::programs_for(const OutputNames& outputs) {
+    const auto [made, is_new] = programs.try_emplace(outputs);
+    if (!is_new) return made->second;
+    const std::vector<LightCode> lights = shadows.light_codes(scene);
+    made->second.plain = make_mesh_program(outputs, false, lights);
+    const bool any_textures = std::any_of(scene.materials.begin(), scene.materials.end(),
+                                          [](const Material& material) { return material.textured(); });
+    if (any_textures) made->second.textured = make_mesh_program(outputs, true, lights);
+    return made->second;
 }
 
 ViewBlock SceneRenderer::State::make_view(const Camera& camera, glm::dvec2 shift, int width, int height) {
@@ -200,7 +222,7 @@ void SceneRenderer::State::draw_list(const std::vector<Draw>& list) {
     glBindVertexArray(buffers.vertex_array());
     for (const Draw& draw : list) {
         const bool textured = scene.materials[draw.part->material].textured();
-        glUseProgram((textured ? textured_program : plain_program).name());
+        glUseProgram((textured ? mesh_programs->textured : mesh_programs->plain).name());
         buffers.bind_material(draw.part->material);
         draw_one(draw);
     }

@@ -32,6 +32,7 @@ struct SceneAttachment {
 struct SceneFrame {
     std::vector<SceneAttachment> attachments; ///< "color", "depth", then the others that were wanted
     Camera camera;                            ///< as drawn
+    std::size_t texture_bytes = 0;            ///< of what was drawn into, samples included
     std::size_t draws = 0, triangles = 0;     ///< of the picture, without shadow maps
 
     /// 0 when there is none of that name.
@@ -51,11 +52,11 @@ public:
     SceneRenderer(SceneRenderer&&) noexcept;
     SceneRenderer& operator=(SceneRenderer&&) noexcept;
 
-    /// Draw the scene as it is at `time` seconds. `wanted`: any of "color", "depth" (both are always made),
-    /// "normal" (view space, unit, of opaque surfaces), "emission", "ambient" (the share of the light in
-    /// color that occlusion may darken); what is not wanted is not drawn. Colours are scene-linear rgba16f,
-    /// depth is 32F, near / z, exactly 0 where nothing is. Makes GL objects only when size or wanted have
-    /// changed. Throws Error.
+    /// Draw the scene as it is at `time` seconds. `wanted`: any of "color" (always made), "depth" (made too where
+    /// it costs nothing: with one sample per pixel), "normal" (view space, unit, of opaque surfaces), "emission",
+    /// "ambient" (the share of the light in color that occlusion may darken); what is not wanted is not drawn.
+    /// Colours are scene-linear rgba16f, depth is 32F, near / z, exactly 0 where nothing is. Makes GL objects only
+    /// when size or wanted have changed. Throws Error.
     SceneFrame render(int width, int height, double time, const std::vector<std::string>& wanted,
                       const std::optional<CameraOverride>& camera = std::nullopt);
 

@@ -94,19 +94,25 @@ std::string light_calls(const std::vector<LightCode>& lights) {
     return text + "    return sum;\n}\n";
 }
 
-std::string resolve_main(const OutputNames& outputs, int samples) {
-    std::string text = declare_outputs(outputs) + "layout(binding = 0) uniform sampler2DMS u_depth;\n";
-    for (std::size_t i = 0; i < outputs.size(); ++i) {
-        text += fmt::format("layout(binding = {}) uniform sampler2DMS u_{};\n", i + 1, outputs[i]);
-    }
-    text += "void main() {\n    ivec2 pixel = ivec2(gl_FragCoord.xy);\n"
-            "    int nearest = 0;\n    float depth = texelFetch(u_depth, pixel, 0).r;\n";
+/// Depth and number of the nearest sample.
+std::string find_nearest(int samples) {
+    std::string text = "    int nearest = 0;\n    float depth = texelFetch(u_depth, pixel, 0).r;\n";
     for (int i = 1; i < samples; ++i) {
         text += fmt::format("    float depth_{0} = texelFetch(u_depth, pixel, {0}).r;\n"
                             "    if (depth_{0} > depth) {{ depth = depth_{0}; nearest = {0}; }}\n",
                             i);
     }
-    text += "    gl_FragDepth = depth;\n";
+    return text + "    gl_FragDepth = depth;\n";
+}
+
+std::string resolve_main(const OutputNames& outputs, int samples, bool depth) {
+    std::string text = declare_outputs(outputs);
+    if (depth) text += "layout(binding = 0) uniform sampler2DMS u_depth;\n";
+    for (std::size_t i = 0; i < outputs.size(); ++i) {
+        text += fmt::format("layout(binding = {}) uniform sampler2DMS u_{};\n", i + 1, outputs[i]);
+    }
+    text += "void main() {\n    ivec2 pixel = ivec2(gl_FragCoord.xy);\n";
+    if (depth) text += find_nearest(samples);
     for (const std::string& output : outputs) {
         if (output == "normal") {
             text += "    o_normal = texelFetch(u_normal, pixel, nearest);\n";
@@ -153,9 +159,9 @@ gl::Program make_sky_program() {
                 ShaderText().file("view.glsl").file("sky.frag.glsl"), "scene sky");
 }
 
-gl::Program make_resolve_program(const OutputNames& outputs, int samples) {
-    return link(ShaderText().file("resolve.vert.glsl"), ShaderText().made(resolve_main(outputs, samples)),
-                "scene resolve");
+gl::Program make_resolve_program(const OutputNames& outputs, int samples, bool depth) {
+    return link(ShaderText().file("resolve.vert.glsl"),
+                ShaderText().made(resolve_main(outputs, samples, depth)), "scene resolve");
 }
 
 } // namespace postfx::host

@@ -30,7 +30,7 @@ gl::Program make_depth_program();
 gl::Program make_shadow_program();
 gl::Program make_sky_program();
 /// Several samples per pixel to one: light is averaged, depth and normal come from the nearest sample.
-/// Samplers: binding 0 is depth, 1 + index the outputs.
-gl::Program make_resolve_program(const OutputNames& outputs, int samples);
+/// Samplers: binding 0 is depth, 1 + index the outputs. Without `depth`, which normals need, only light.
+gl::Program make_resolve_program(const OutputNames& outputs, int samples, bool depth);
 
 } // namespace postfx::host

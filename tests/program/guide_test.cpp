@@ -215,6 +215,18 @@ TEST_CASE("guide: crisp is steeper at edges and stays between its neighbours") {
     CHECK(worst.absolute < 12 * 12 * 0x1p-24);
 }
 
+TEST_CASE("guide: sparkle adds to bright light, and leaves frames without it alone") {
+    guide();
+    if (no_gl()) return;
+    Input input{.color = noise(70, 50, 0, 3)};
+    CHECK(same_bits(run_effect("sparkle", input), input.color)); // the threshold is 4
+    input.color.at(60, 40, 1) = 10;
+    const Image result = run_effect("sparkle", input);
+    CHECK(result.at(60, 40, 1) == 10 + 0.5f * 6);
+    CHECK(result.at(60, 40, 0) == input.color.at(60, 40, 0));
+    CHECK(result.at(3, 3, 1) == input.color.at(3, 3, 1));
+}
+
 TEST_CASE("guide: shake moves the picture by the angle that the camera sees") {
     guide();
     if (no_gl()) return;

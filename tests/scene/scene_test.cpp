@@ -315,7 +315,8 @@ TEST_CASE("every shipped scene opens and says what it is") {
         const Scene scene = open_scene(entry.name, scenes);
         CHECK_FALSE(scene.description.empty());
         CHECK(scene.description == entry.description);
-        CHECK(scene.facts().emitters);
+        // By one of them at least something is seen.
+        CHECK((scene.facts().emitters || scene.facts().lights > 0 || scene.facts().sky));
     }
 }
 
