@@ -319,11 +319,18 @@ void plan(const postfx::Request& in, postfx::Builder& out) {
     passes.compose(passes.glow(rung, blurs, shares), rung.block, scattered);
 }
 
+/// Scattering averages. A threshold is steep, and a guard compares with neighbours: no bound is known for these.
+postfx::Gain gain(const postfx::Request& in) {
+    const bool averages = in.choice("mode") != threshold && in.number("firefly_guard") == 0;
+    return averages ? postfx::Gain{} : postfx::Gain::unknown();
+}
+
 constexpr auto bloom = postfx::effect<plan>("bloom")
                            .about("Light scattered around bright places")
                            .with_parameters(parameters)
                            .reading(attachments)
-                           .with_levels(levels, medium);
+                           .with_levels(levels, medium)
+                           .with_gain<gain>();
 
 } // namespace
 

@@ -107,11 +107,17 @@ void plan(const postfx::Request& in, postfx::Builder& out) {
     }
 }
 
+/// Filtered samples average; cubic kernels overshoot.
+postfx::Gain gain(const postfx::Request& in) {
+    return in.level() <= high ? postfx::Gain{} : postfx::Gain::unknown();
+}
+
 constexpr auto chromatic_aberration = postfx::effect<plan>("chromatic_aberration")
                                           .about("Colour fringes that grow towards the corners")
                                           .with_parameters(parameters)
                                           .reading(attachments)
-                                          .with_levels(levels, medium);
+                                          .with_levels(levels, medium)
+                                          .with_gain<gain>();
 
 } // namespace
 

@@ -119,8 +119,8 @@ Lens orthographic_lens(const postfx::Request& in) {
     const postfx_camera& camera = in.camera();
     const double focus = focus_metres(in);
     const double per_metre = aperture_metres(in) * in.height() / camera.vertical_extent / focus;
-    constexpr double unbounded = std::numeric_limits<double>::infinity();
-    return {per_metre * camera.depth_scale, per_metre * (camera.depth_offset - focus), unbounded, unbounded};
+    const double far_away = per_metre > 0 ? std::numeric_limits<double>::infinity() : 0;
+    return {per_metre * camera.depth_scale, per_metre * (camera.depth_offset - focus), far_away, far_away};
 }
 
 /// Shift of the signed circle [px] for red, green and blue. The sensor stays where green (549 nm) is sharp; a focal
@@ -352,7 +352,8 @@ constexpr auto depth_of_field = postfx::effect<plan>("depth_of_field")
                                     .about("Blur of what is not in focus, as by a lens")
                                     .with_parameters(parameters)
                                     .reading(attachments)
-                                    .with_levels(levels, medium);
+                                    .with_levels(levels, medium)
+                                    .without_amplifying();
 
 } // namespace
 

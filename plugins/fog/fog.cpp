@@ -1,7 +1,9 @@
 // Fog of constant density, or one that thins out with height. README.md has the model and its limits.
 #include <postfx/plugin.hpp>
 
+#include <algorithm>
 #include <cmath>
+#include <string>
 
 namespace {
 
@@ -48,6 +50,25 @@ double longest_ray(const postfx::Request& in) {
     return std::sqrt(1 + up * up + across * across);
 }
 
+/// The thickest that the fog can be on a ray of this scene, from its densest height: changes the light behind it by a
+/// share, and adds its own.
+bool is_below_a_code(const postfx::Request& in, postfx::Builder& out) {
+    const postfx_scene& scene = in.scene();
+    const double falloff = in.number("height_falloff");
+    // Level classic has the same density everywhere; the exponent's bound is the shader's.
+    const double exponent =
+        falloff > 0 ? std::clamp(-falloff * (scene.lowest - in.number("base_height")), 0.0, 30.0) : 0.0;
+    const double thickness =
+        in.number("density") * std::exp(exponent) * std::max(scene.reach - in.number("start"), 0.0);
+    const double opacity = std::min(1 - std::exp(-thickness), in.number("max_opacity"));
+    const double* color = in.color("color");
+    const double codes =
+        in.codes_of_share(opacity) + in.codes_of_light(opacity * std::max({color[0], color[1], color[2]}));
+    if (codes > postfx::negligible_codes) return false;
+    return out.not_called_for("code", "the densest fog over the longest ray changes " + std::to_string(codes)
+                                          + " of an 8-bit code at most");
+}
+
 void plan(const postfx::Request& in, postfx::Builder& out) {
     if (in.number("density") == 0 && out.identity("density is 0")) return;
     if (in.number("max_opacity") == 0 && out.identity("max_opacity is 0")) return;
@@ -60,6 +81,7 @@ void plan(const postfx::Request& in, postfx::Builder& out) {
         && out.not_called_for("exact", "all in view is nearer than the start")) {
         return;
     }
+    if (!covers_sky && is_below_a_code(in, out)) return;
     if (!covers_sky && start > 0) {
         out.skip_when("exact", "fog_nearer.glsl", "farthest surface [m]", "start")
             .reads("depth", out.attachment("depth"), "nearest")
@@ -75,7 +97,8 @@ constexpr auto fog = postfx::effect<plan>("fog")
                          .about("Fog that thins out with height")
                          .with_parameters(parameters)
                          .reading(attachments)
-                         .with_levels(levels, medium);
+                         .with_levels(levels, medium)
+                         .without_amplifying();
 
 } // namespace
 

@@ -88,12 +88,19 @@ void plan(const postfx::Request& in, postfx::Builder& out) {
         .constant("GRAIN_LAYERS", layers_of_discs);
 }
 
+/// u + n sqrt(u (1 - u)), its second part cut at the nearer end: at most twice as steep as u up to 1, as steep
+/// beyond. The discs of the reference come and go with the light.
+postfx::Gain gain(const postfx::Request& in) {
+    return in.level() == reference ? postfx::Gain::unknown() : postfx::Gain{1, 2, 2};
+}
+
 constexpr auto grain = postfx::effect<plan>("grain")
                            .about("Film grain: strongest in the mid-tones, none in black and white")
                            .at_stage("display")
                            .with_parameters(parameters)
                            .reading(attachments)
-                           .with_levels(levels, medium);
+                           .with_levels(levels, medium)
+                           .with_gain<gain>();
 
 } // namespace
 

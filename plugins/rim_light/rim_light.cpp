@@ -2,6 +2,7 @@
 #include <postfx/plugin.hpp>
 
 #include <algorithm>
+#include <string>
 
 namespace {
 
@@ -62,6 +63,12 @@ void plan(const postfx::Request& in, postfx::Builder& out) {
         && out.not_called_for("exact", "there is no surface in view")) {
         return;
     }
+    const double codes = in.codes_of_light(in.number("strength") * std::max({color[0], color[1], color[2]}));
+    if (codes <= postfx::negligible_codes
+        && out.not_called_for("code", "the brightest rim changes " + std::to_string(codes)
+                                          + " of an 8-bit code at most")) {
+        return;
+    }
     if (in.has("normal")) return compose(in, out, out.attachment("normal"));
     if (!in.has("depth")) {
         return out.lacks("there is neither a normal nor a depth attachment to find edges by");
@@ -76,7 +83,8 @@ constexpr auto rim_light = postfx::effect<plan>("rim_light")
                                .about("Light from behind that catches the edges of things")
                                .with_parameters(parameters)
                                .reading(attachments)
-                               .with_levels(levels, medium);
+                               .with_levels(levels, medium)
+                               .without_amplifying();
 
 } // namespace
 

@@ -20,10 +20,25 @@ void plan(const postfx::Request& in, postfx::Builder& out) {
     out.compose("tonemap.glsl").value("gain", std::exp2(in.number("exposure")));
 }
 
+/// The steepest slope of each curve, and the largest product of light and slope: what a share of light comes out as.
+/// aces: the film curve's own 0.905 and 0.364, times 1 / 0.6 (slope only) and 2.21, the row of the matrices that
+/// amplifies most. reinhard mixes with grey by the brightest channel: no bound is known.
+postfx::Gain gain(const postfx::Request& in) {
+    struct Steepest {
+        double slope, share;
+    };
+    constexpr double unknown = std::numeric_limits<double>::infinity();
+    constexpr Steepest steepest[] = {
+        {0.905 / 0.6 * 2.21, 0.364 * 2.21}, {unknown, unknown}, {0.767, 0.323}, {1, 1}};
+    const Steepest& curve = steepest[in.choice("operator")];
+    return {0, std::exp2(in.number("exposure")) * curve.slope, curve.share};
+}
+
 constexpr auto tonemap = postfx::effect<plan>("tonemap")
                              .about("Brings scene-linear light into the display's range")
                              .at_stage("scene_to_display")
-                             .with_parameters(parameters);
+                             .with_parameters(parameters)
+                             .with_gain<gain>();
 
 } // namespace
 

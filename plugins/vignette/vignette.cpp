@@ -1,6 +1,8 @@
 // Darkens the picture towards its corners, as a lens does or as a photographer likes it.
 #include <postfx/plugin.hpp>
 
+#include <string>
+
 namespace {
 
 constexpr const char* models[] = {"natural", "artistic"};
@@ -34,6 +36,12 @@ enum LevelIndex { classic, medium };
 
 void plan(const postfx::Request& in, postfx::Builder& out) {
     if (in.number("strength") == 0 && out.identity("strength is 0")) return;
+    const double codes = in.codes_of_share(in.number("strength"));
+    if (codes <= postfx::negligible_codes
+        && out.not_called_for("code", "the darkest corner changes " + std::to_string(codes)
+                                          + " of an 8-bit code at most")) {
+        return;
+    }
     if (in.level() == classic) {
         out.compose("vignette_classic.glsl");
         return;
@@ -55,7 +63,8 @@ void plan(const postfx::Request& in, postfx::Builder& out) {
 constexpr auto vignette = postfx::effect<plan>("vignette")
                               .about("Darkens the picture towards its corners")
                               .with_parameters(parameters)
-                              .with_levels(levels, medium);
+                              .with_levels(levels, medium)
+                              .without_amplifying();
 
 } // namespace
 

@@ -353,7 +353,7 @@ void try_extremes(Trial& trial) {
 
 /// A value of the range; ends and default come up often, since that is where branches are.
 double random_value(const ParameterInfo& parameter, std::mt19937& random) {
-    const double share = static_cast<double>(random() >> 8) / 16777216.0;
+    const double share = share_of(random());
     switch (random() % 6) {
     case 0:
         return parameter.minimum;
@@ -362,12 +362,8 @@ double random_value(const ParameterInfo& parameter, std::mt19937& random) {
     case 2:
         return parameter.default_value[0];
     default:
-        break;
+        return value_at(parameter, share);
     }
-    if (parameter.logarithmic && parameter.minimum > 0) {
-        return parameter.minimum * std::pow(parameter.maximum / parameter.minimum, share);
-    }
-    return parameter.minimum + share * (parameter.maximum - parameter.minimum);
 }
 
 void try_random_values(Trial& trial) {

@@ -163,4 +163,17 @@ inline Image fragile_color() {
     return color;
 }
 
+/// A random word as a number in [0, 1); not uniform_real_distribution: its result differs between standard libraries.
+inline double share_of(std::uint_fast32_t word) {
+    return static_cast<double>(word >> 8) / 16777216.0;
+}
+
+/// So far into the range, by factors where that is how the parameter is meant.
+inline double value_at(const ParameterInfo& parameter, double share) {
+    if (parameter.logarithmic) {
+        return parameter.minimum * std::pow(parameter.maximum / parameter.minimum, share);
+    }
+    return parameter.minimum + share * (parameter.maximum - parameter.minimum);
+}
+
 } // namespace postfx::testing

@@ -64,6 +64,7 @@ struct EffectInfo {
     std::vector<SourceInfo> sources;
     std::filesystem::path module_path;
     const postfx_effect* abi = nullptr; ///< stays mapped until the process ends
+    void (*gain)(const postfx_request*, postfx_gain*) = nullptr; ///< may be absent
 
     /// Index into parameters; nothing if there is none of that id.
     std::optional<std::size_t> find_parameter(std::string_view parameter_id) const;

@@ -80,7 +80,7 @@ typedef struct postfx_scene {
     uint32_t reserved;
     double nearest, farthest; /* metres along the view axis, of any surface; not known: 0 and infinity */
     double reach;             /* metres from the eye to the farthest surface along its ray; infinity: not known */
-    double lowest, highest;   /* metres in the world, of any surface; not known: -infinity and infinity */
+    double lowest, highest;   /* metres in the world, of any surface and the eye; not known: -infinity and infinity */
     /* Attachments that are zero in every pixel (no emitter, no ambient light); "depth": nothing but sky. */
     const char* const* empty;
     uint32_t empty_count;
@@ -101,7 +101,19 @@ typedef struct postfx_request {
     uint32_t attachment_count;
     uint32_t reserved;
     const postfx_scene* scene;
+    /* At most so many 8-bit codes of the displayed picture change when this effect's output changes by 1 in light, or
+       by a share of 1 of itself (for small changes, of light that is not negative). Infinity: not known, because what
+       follows does not say what it does to changes. */
+    double codes_per_light, codes_per_share;
 } postfx_request;
+
+/* What an effect does to small changes of the light that comes in, at most, in any pixel: a change by the share s of
+   itself plus the light a comes out as share_to_share * s of itself plus share_to_light * s + light_to_light * a. */
+typedef struct postfx_gain {
+    uint32_t struct_size;
+    uint32_t reserved;
+    double share_to_share, light_to_light, share_to_light;
+} postfx_gain;
 
 typedef uint32_t postfx_image; /* an image of the plan being made; 0 = none */
 
@@ -206,6 +218,8 @@ typedef struct postfx_effect {
     uint32_t level_count, level_stride;
     /* Pure: same request, same calls. Returns 0, or non-zero after refuse(). */
     int32_t (*plan)(const postfx_request* request, const postfx_builder* builder);
+    /* Pure. Null: not known; then no effect in front of this one is skipped for changing less than a code. */
+    void (*gain)(const postfx_request* request, postfx_gain* gain);
 } postfx_effect;
 
 typedef struct postfx_module {

@@ -28,6 +28,7 @@
 #include <cstring>
 #include <exception>
 #include <initializer_list>
+#include <limits>
 #include <string>
 
 #if __has_include(<postfx_embedded_sources.h>)
@@ -152,6 +153,10 @@ public:
     }
     /// Bounds of the scene that the host knows without looking at pixels.
     const postfx_scene& scene() const { return *request_.scene; }
+    /// At most so many 8-bit codes of the displayed picture change where this effect's output changes by that much
+    /// light, or by that share of itself. Infinite if it is not known what the effects behind this one do to it.
+    double codes_of_light(double change) const { return codes(change, request_.codes_per_light); }
+    double codes_of_share(double change) const { return codes(change, request_.codes_per_share); }
     /// Is the attachment known to be zero in every pixel ("depth": nothing but sky)?
     bool is_empty(const char* attachment) const {
         return is_among(scene().empty, scene().empty_count, attachment);
@@ -165,6 +170,7 @@ private:
         std::string text;
     };
 
+    static double codes(double change, double per) { return change > 0 ? change * per : 0; }
     static bool is_among(const char* const* words, std::uint32_t count, const char* word) {
         for (std::uint32_t i = 0; i < count; ++i) {
             if (std::strcmp(words[i], word) == 0) return true;
@@ -420,7 +426,37 @@ private:
     const postfx_request& request_;
 };
 
+/// Changes of a picture that stay below this [8-bit codes] may be left out under the kind "code": ten effects of one
+/// chain may do so, and together change no code by more than one.
+inline constexpr double negligible_codes = 0.1;
+
 // ---- declaring the effect
+
+/// What an effect does to small changes of the light that comes in: see postfx_gain.
+struct Gain {
+    double share_to_share = 1, light_to_light = 1, share_to_light = 0;
+    static constexpr Gain unknown() {
+        constexpr double infinity = std::numeric_limits<double>::infinity();
+        return {infinity, infinity, infinity};
+    }
+};
+
+template<Gain (*gain)(const Request&)>
+void gain_entry(const postfx_request* request, postfx_gain* out) noexcept {
+    Gain found = Gain::unknown();
+    try {
+        found = gain(Request(*request));
+    } catch (...) { // such as a parameter that was not declared; plan() will tell
+    }
+    out->share_to_share = found.share_to_share;
+    out->light_to_light = found.light_to_light;
+    out->share_to_light = found.share_to_light;
+}
+
+/// Of effects that average light, take some away or add some that does not depend on it.
+inline Gain unit_gain(const Request&) {
+    return {};
+}
 
 /// A postfx_effect under construction; every call returns a changed copy.
 struct Effect : postfx_effect {
@@ -447,6 +483,15 @@ struct Effect : postfx_effect {
         changed.stage = stage;
         return changed;
     }
+    /// How the effect passes on small changes. Without it, effects in front of it must be `exact` to be skipped.
+    template<Gain (*gain)(const Request&)>
+    constexpr Effect with_gain() const {
+        Effect changed = *this;
+        changed.gain = gain_entry<gain>;
+        return changed;
+    }
+    /// A change comes out no larger than it went in, neither as light nor as a share of it.
+    constexpr Effect without_amplifying() const { return with_gain<unit_gain>(); }
     template<class P, std::size_t count>
     constexpr Effect with_parameters(const P (&parameters)[count]) const {
         Effect changed = *this;

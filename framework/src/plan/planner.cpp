@@ -63,11 +63,12 @@ public:
         stored_ = {{attachment("color"), {}}};
     }
 
-    void add(const ChainEntry& given) {
+    /// `codes`: how strongly the picture shows changes of what this effect gives.
+    void add(const ChainEntry& given, const Codes& codes) {
         const ChainEntry entry = within_ranges(given);
         plan_.effects.push_back({entry.name, entry.effect->id, EffectStatus::ran, "", "", ""});
         if (!entry.enabled) return skip({"configuration", "exact", "enabled is false"});
-        const Recording recording = record(entry, facts_, skip_);
+        const Recording recording = record(entry, facts_, skip_, codes);
         if (recording.identity) return skip(*recording.identity);
         warn_about_order(entry);
         if (recording.decision) add_decision(entry, recording);
@@ -476,9 +477,14 @@ Plan Planner::plan(const Chain& chain, const Facts& facts) {
     if (facts.width < 1 || facts.height < 1) {
         throw Error(fmt::format("a picture of {}x{} pixels can't be planned", facts.width, facts.height));
     }
+    std::vector<Codes> codes(chain.entries.size() + 1, display_codes());
+    for (std::size_t i = chain.entries.size(); i-- > 0;) {
+        const ChainEntry& entry = chain.entries[i];
+        codes[i] = entry.enabled ? codes_before(entry, facts, codes[i + 1]) : codes[i + 1];
+    }
     Walk walk(facts, chain.skip, memory_->programs);
-    for (const ChainEntry& entry : chain.entries)
-        walk.add(entry);
+    for (std::size_t i = 0; i < chain.entries.size(); ++i)
+        walk.add(chain.entries[i], codes[i + 1]);
     return walk.finish();
 }
 

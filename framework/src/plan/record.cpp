@@ -343,6 +343,46 @@ postfx_camera abi_camera(const Camera& camera) {
     return abi;
 }
 
+/// A postfx_request with everything that it points to.
+class AbiRequest {
+public:
+    AbiRequest(const ChainEntry& entry, const Facts& facts, const Codes& codes)
+        : camera_(abi_camera(facts.camera)), attachments_(c_strings(facts.attachments)),
+          empty_(c_strings(facts.scene.empty)) {
+        scene_.struct_size = sizeof(scene_);
+        scene_.nearest = facts.scene.nearest;
+        scene_.farthest = facts.scene.farthest;
+        scene_.reach = facts.scene.reach;
+        const double eye_height = facts.camera.view_to_world[13];
+        scene_.lowest = std::min(facts.scene.lowest, eye_height);
+        scene_.highest = std::max(facts.scene.highest, eye_height);
+        scene_.empty = empty_.data();
+        scene_.empty_count = static_cast<std::uint32_t>(empty_.size());
+        request_.struct_size = sizeof(request_);
+        request_.width = static_cast<std::uint32_t>(facts.width);
+        request_.height = static_cast<std::uint32_t>(facts.height);
+        request_.level = static_cast<std::uint32_t>(entry.level);
+        request_.effect = entry.effect->abi;
+        request_.values = entry.values.empty() ? nullptr : entry.values.front().data();
+        request_.camera = &camera_;
+        request_.attachments = attachments_.data();
+        request_.attachment_count = static_cast<std::uint32_t>(attachments_.size());
+        request_.scene = &scene_;
+        request_.codes_per_light = codes.per_light;
+        request_.codes_per_share = codes.per_share;
+    }
+    AbiRequest(const AbiRequest&) = delete;
+    AbiRequest& operator=(const AbiRequest&) = delete;
+
+    const postfx_request& get() const { return request_; }
+
+private:
+    postfx_camera camera_;
+    std::vector<const char*> attachments_, empty_;
+    postfx_scene scene_{};
+    postfx_request request_{};
+};
+
 } // namespace
 
 bool Recording::reads_color(const RecordedPass& pass) const {
@@ -351,33 +391,26 @@ bool Recording::reads_color(const RecordedPass& pass) const {
     });
 }
 
-Recording record(const ChainEntry& entry, const Facts& facts, Skip skip) {
-    const postfx_camera camera = abi_camera(facts.camera);
-    const std::vector<const char*> attachments = c_strings(facts.attachments);
-    const std::vector<const char*> empty = c_strings(facts.scene.empty);
-    postfx_scene scene{};
-    scene.struct_size = sizeof(scene);
-    scene.nearest = facts.scene.nearest;
-    scene.farthest = facts.scene.farthest;
-    scene.reach = facts.scene.reach;
-    scene.lowest = facts.scene.lowest;
-    scene.highest = facts.scene.highest;
-    scene.empty = empty.data();
-    scene.empty_count = static_cast<std::uint32_t>(empty.size());
-    postfx_request request{};
-    request.struct_size = sizeof(request);
-    request.width = static_cast<std::uint32_t>(facts.width);
-    request.height = static_cast<std::uint32_t>(facts.height);
-    request.level = static_cast<std::uint32_t>(entry.level);
-    request.effect = entry.effect->abi;
-    request.values = entry.values.empty() ? nullptr : entry.values.front().data();
-    request.camera = &camera;
-    request.attachments = attachments.data();
-    request.attachment_count = static_cast<std::uint32_t>(attachments.size());
-    request.scene = &scene;
+Codes display_codes() {
+    // sRGB is steepest at black, 12.92; relative to the light at white, 1.055 / 2.4.
+    return {255 * 12.92, 255 * 1.055 / 2.4};
+}
 
+Codes codes_before(const ChainEntry& entry, const Facts& facts, const Codes& behind) {
+    postfx_gain gain{};
+    gain.struct_size = sizeof(gain);
+    constexpr double unknown = std::numeric_limits<double>::infinity();
+    gain.share_to_share = gain.light_to_light = gain.share_to_light = unknown;
+    if (entry.effect->gain) entry.effect->gain(&AbiRequest(entry, facts, behind).get(), &gain);
+    const auto product = [](double a, double b) { return a == 0 || b == 0 ? 0 : a * b; };
+    return {product(behind.per_light, gain.light_to_light),
+            product(behind.per_share, gain.share_to_share) + product(behind.per_light, gain.share_to_light)};
+}
+
+Recording record(const ChainEntry& entry, const Facts& facts, Skip skip, const Codes& codes) {
+    const AbiRequest request(entry, facts, codes);
     Recorder recorder(entry, facts, skip);
-    const std::int32_t status = entry.effect->abi->plan(&request, &recorder.abi());
+    const std::int32_t status = entry.effect->abi->plan(&request.get(), &recorder.abi());
     Recording recording = recorder.finish();
     if (status != 0)
         throw Error(Place{.effect = entry.name}, fmt::format("plan() failed with status {}", status));

@@ -69,8 +69,17 @@ struct Recording {
     bool reads_color(const RecordedPass& pass) const;
 };
 
+/// How many 8-bit codes of the picture change, at most, with light and with shares of it.
+struct Codes {
+    double per_light = 0, per_share = 0;
+};
+/// Of the picture as it is displayed: sRGB encoded.
+Codes display_codes();
+/// In front of an effect, if `behind` holds behind it. Infinite if the effect does not say what it does.
+Codes codes_before(const ChainEntry& entry, const Facts& facts, const Codes& behind);
+
 /// Call the effect's plan(). Throws Error naming the chain entry when it refuses or declares something wrong.
-/// `skip`: what it may leave out.
-Recording record(const ChainEntry& entry, const Facts& facts, Skip skip);
+/// `skip`: what it may leave out; `codes`: behind it.
+Recording record(const ChainEntry& entry, const Facts& facts, Skip skip, const Codes& codes);
 
 } // namespace postfx

@@ -166,6 +166,7 @@ EffectInfo read_effect(const postfx_effect& declared, const std::vector<SourceIn
     info.sources = sources;
     info.module_path = origin;
     info.abi = &declared;
+    info.gain = effect.gain;
     if (std::find(stages.begin(), stages.end(), info.stage) == stages.end()) {
         complain("has the unknown stage \"{}\"", info.stage);
     }
