@@ -4,7 +4,10 @@
 #include "text_table.hpp"
 
 #include <image/files.hpp>
+#include <image/flip.hpp>
+#include <image/heat_colors.hpp>
 #include <image/metrics.hpp>
+#include <image/srgb.hpp>
 
 #include <postfx/error.hpp>
 
@@ -97,6 +100,34 @@ void write_difference_png(const std::string& file, const Image& difference, doub
     write_png(file, rgb.width, rgb.height, 3, codes);
 }
 
+/// Light in float64, whatever the files hold; alpha is never encoded.
+Image64 light(const Image& image, bool codes) {
+    Image64 result = convert<double>(image);
+    if (!codes) return result;
+    const std::size_t colors = image.channels < 3 ? 1 : 3;
+    for (std::size_t i = 0; i < image.pixel_count(); ++i)
+        for (std::size_t c = 0; c < colors; ++c) {
+            double& value = result.values[i * static_cast<std::size_t>(image.channels) + c];
+            value = srgb_to_linear(value);
+        }
+    return result;
+}
+
+/// .png in heat colours, else the errors themselves in one channel.
+void write_map(const std::string& file, const Image& map) {
+    if (is_display_kind(file))
+        write_png(file, map.width, map.height, 3, heat_colors(map));
+    else
+        write_image(file, map);
+}
+
+/// All that is measured.
+struct Measured {
+    Difference difference;
+    RelativeError relative;
+    std::optional<FlipError> flip;
+};
+
 Json finite_or_null(double value) {
     return std::isfinite(value) ? Json(value) : Json();
 }
@@ -104,7 +135,9 @@ Json finite_or_null(double value) {
 class DiffCommand : public Command {
 public:
     void declare(CLI::App& app) override {
-        app.add_option("A", a_, "Picture: PNG, JPEG, HDR, EXR or PFM")->required()->type_name("");
+        app.add_option("A", a_, "Picture: PNG, JPEG, HDR, EXR or PFM; the reference of the relative errors")
+            ->required()
+            ->type_name("");
         app.add_option("B", b_, "Picture of the same size")->required()->type_name("");
         app.add_option("-o,--output", output_,
                        "Write the absolute difference: .png amplified (--gain), .exr, .hdr or .pfm as it is")
@@ -119,46 +152,92 @@ public:
         app.add_option("--min-psnr", min_psnr_, "Status 0 when the PSNR is at least this [dB]");
         app.add_option("--layer", layer_, "Compare this layer of two EXR files instead of the colour")
             ->type_name("NAME");
+        CLI::Option* flip =
+            app.add_flag("--flip", flip_, "Also LDR-FLIP: what a viewer sees who flips between the pictures");
+        app.add_option(
+               "--ppd", ppd_,
+               "Viewing condition of FLIP: pixels per degree of the visual field (67.02: a 3840 pixels "
+               "and 0.7 m wide screen seen from 0.7 m)")
+            ->check(CLI::Range(1.0, 1000.0))
+            ->needs(flip);
+        app.add_option(
+               "--map", map_,
+               "Write FLIP per pixel: .png in heat colours (black 0, white 1, green not finite), .exr "
+               "or .pfm as it is")
+            ->type_name("FILE")
+            ->needs(flip);
         app.add_flag("--json", json_, "As JSON");
         app.footer(
             "Two 8-bit files are compared as their codes / 255, anything else as linear values.\n"
             "differing counts pixels with any difference in bits; worst is counted from the top left.\n"
             "A pixel that is not finite in one picture only is beyond every bound, and makes SSIM 0.\n"
-            "JSON: {max_abs, rmse, psnr, ssim, differing, non_finite, worst: {x, y}, pixels, peak, compared, "
-            "notes,\n"
-            "passed}; psnr is null when infinite (equal pictures), psnr and rmse with a non_finite pixel.\n"
+            "rel_mse is the mean of (b - a)^2 / (|a| + 0.01)^2, relative_rmse is sqrt(sum (b - a)^2 / sum "
+            "a^2), "
+            "both over\n"
+            "the colours in linear light (8-bit files are decoded for them); without a value when any pixel "
+            "of "
+            "either\n"
+            "picture is not finite (non_finite_light counts them).\n"
+            "FLIP (Andersson et al. 2020) is for pictures as a display shows them: 8-bit files, or linear "
+            "light in "
+            "0..1;\n"
+            "what lies outside is shown as 0 or 1 and counted (clipped), so tone map light first. Median and "
+            "quartiles are\n"
+            "weighted by the error: half of all error is in pixels below the median.\n"
+            "JSON: {max_abs, rmse, psnr, ssim, rel_mse, relative_rmse, differing, non_finite, "
+            "non_finite_light, "
+            "worst: {x, y},\n"
+            "pixels, peak, compared, notes, passed} and with --flip {flip: {pixels_per_degree, mean, "
+            "weighted_median,\n"
+            "weighted_first_quartile, weighted_third_quartile, min, max, non_finite, clipped}}; what is "
+            "infinite "
+            "is null:\n"
+            "psnr of equal pictures, psnr, rmse and flip with a non_finite pixel.\n"
             "Status: 0 equal (with --max-abs and --min-psnr: within both), 1 different, 2 bad input.");
     }
 
     Status run() override {
-        if (!output_.empty()) check_writable_kind(output_);
+        for (const std::string& file : {output_, map_})
+            if (!file.empty()) check_writable_kind(file);
         const Pair pair = read_pair(a_, b_, layer_);
-        const Difference difference = compare(pair.a, pair.b, peak_);
-        const bool passes = passed(difference);
+        const Measured measured = measure(pair);
+        const bool passes = passed(measured.difference);
         if (json_) {
-            fmt::print("{}\n", json(pair, difference, passes).dump(2));
+            fmt::print("{}\n", json(pair, measured, passes).dump(2));
         } else {
-            print(pair, difference, passes);
+            print(pair, measured, passes);
         }
-        if (!output_.empty()) write_difference(pair, difference);
+        if (!output_.empty()) write_difference(pair, measured.difference);
+        if (!map_.empty()) write_map(map_, measured.flip->map);
         return passes ? Status::success : Status::differs;
     }
 
 private:
+    Measured measure(const Pair& pair) const {
+        Measured measured{compare(pair.a, pair.b, peak_),
+                          relative_error(light(pair.b, pair.codes), light(pair.a, pair.codes)), std::nullopt};
+        if (flip_) measured.flip = flip(pair.a, pair.b, pair.codes ? Encoding::srgb : Encoding::linear, ppd_);
+        return measured;
+    }
+
     bool passed(const Difference& difference) const {
         if (!max_abs_ && !min_psnr_) return difference.differing == 0;
         return difference.non_finite == 0 && (!max_abs_ || difference.max_abs <= *max_abs_)
                && (!min_psnr_ || difference.psnr >= *min_psnr_);
     }
 
-    Json json(const Pair& pair, const Difference& difference, bool passes) const {
-        return {
+    Json json(const Pair& pair, const Measured& measured, bool passes) const {
+        const Difference& difference = measured.difference;
+        Json json = {
             {"max_abs", difference.max_abs},
             {"rmse", finite_or_null(difference.rmse)},
             {"psnr", finite_or_null(difference.psnr)},
             {"ssim", difference.ssim},
+            {"rel_mse", finite_or_null(measured.relative.rel_mse)},
+            {"relative_rmse", finite_or_null(measured.relative.relative_rmse)},
             {"differing", difference.differing},
             {"non_finite", difference.non_finite},
+            {"non_finite_light", measured.relative.non_finite},
             {"worst", {{"x", difference.worst_x}, {"y", pair.a.height - 1 - difference.worst_y}}},
             {"pixels", pair.a.pixel_count()},
             {"peak", peak_},
@@ -166,9 +245,26 @@ private:
             {"notes", pair.notes},
             {"passed", passes},
         };
+        if (measured.flip) json["flip"] = flip_json(*measured.flip);
+        return json;
     }
 
-    void print(const Pair& pair, const Difference& difference, bool passes) const {
+    Json flip_json(const FlipError& error) const {
+        return {
+            {"pixels_per_degree", ppd_},
+            {"mean", finite_or_null(error.mean)},
+            {"weighted_median", finite_or_null(error.weighted_median)},
+            {"weighted_first_quartile", finite_or_null(error.weighted_first_quartile)},
+            {"weighted_third_quartile", finite_or_null(error.weighted_third_quartile)},
+            {"min", finite_or_null(error.min)},
+            {"max", finite_or_null(error.max)},
+            {"non_finite", error.non_finite},
+            {"clipped", error.clipped},
+        };
+    }
+
+    void print(const Pair& pair, const Measured& measured, bool passes) const {
+        const Difference& difference = measured.difference;
         const double share =
             100.0 * static_cast<double>(difference.differing) / static_cast<double>(pair.a.pixel_count());
         const bool bounded = max_abs_ || min_psnr_;
@@ -179,16 +275,21 @@ private:
             {"rmse", fmt::format("{:.6g}", difference.rmse)},
             {"psnr", fmt::format("{:.4g} dB", difference.psnr)},
             {"ssim", fmt::format("{:.6f}", difference.ssim)},
+            {"rel_mse", fmt::format("{:.6g}", measured.relative.rel_mse)},
+            {"relative_rmse", fmt::format("{:.6g}", measured.relative.relative_rmse)},
             {"differing",
              fmt::format("{} of {} pixels ({:.3g} %)", difference.differing, pair.a.pixel_count(), share)},
         };
         if (difference.non_finite > 0)
             rows.push_back(
                 {"non_finite", fmt::format("{} pixels in one picture only", difference.non_finite)});
+        if (measured.relative.non_finite > difference.non_finite)
+            rows.push_back({"non_finite_light", fmt::format("{} pixels", measured.relative.non_finite)});
         if (difference.differing > 0) {
             rows.push_back({"worst", fmt::format("at {}, {} from the top left", difference.worst_x,
                                                  pair.a.height - 1 - difference.worst_y)});
         }
+        if (measured.flip) add_flip(rows, *measured.flip);
         rows.push_back({"compared", pair.codes ? "8-bit codes / 255" : "linear values"});
         for (const std::string& note : pair.notes)
             rows.push_back({"note", note});
@@ -196,6 +297,16 @@ private:
                    bounded ? (passes ? "within the bounds" : "beyond the bounds")
                            : (passes ? "equal" : "different"),
                    text_table(rows, 2));
+    }
+
+    void add_flip(std::vector<std::vector<std::string>>& rows, const FlipError& error) const {
+        rows.push_back({"flip", fmt::format("{:.6f} mean at {:.4g} pixels per degree", error.mean, ppd_)});
+        rows.push_back({"flip range", fmt::format("{:.6f} to {:.6f}", error.min, error.max)});
+        rows.push_back(
+            {"flip weighted", fmt::format("median {:.6f}, quartiles {:.6f} and {:.6f}", error.weighted_median,
+                                          error.weighted_first_quartile, error.weighted_third_quartile)});
+        if (error.clipped > 0)
+            rows.push_back({"flip clipped", fmt::format("{} pixels outside 0..1", error.clipped)});
     }
 
     void write_difference(const Pair& pair, const Difference& difference) const {
@@ -209,10 +320,10 @@ private:
         if (!json_) fmt::print("  {} shows the difference times {:.4g}\n", output_, gain);
     }
 
-    std::string a_, b_, output_, layer_;
+    std::string a_, b_, output_, layer_, map_;
     std::optional<double> gain_, max_abs_, min_psnr_;
-    double peak_ = 1;
-    bool json_ = false;
+    double peak_ = 1, ppd_ = default_pixels_per_degree;
+    bool json_ = false, flip_ = false;
 };
 
 const Register<DiffCommand> registered("diff",

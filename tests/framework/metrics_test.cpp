@@ -134,3 +134,39 @@ TEST_CASE("What can't be compared") {
     CHECK_THROWS_AS(compare(Image(), Image()), Error);
     CHECK_THROWS_AS(compare(Image(1, 1, 1), Image(1, 1, 1), 0.0), Error);
 }
+
+TEST_CASE("Relative errors of light") {
+    // One of 2 pixels: r = 0.99, x = 1.19 in red; the scale of the first is 0.99 + 0.01 = 1.
+    Image64 reference(2, 1, 3, 0.99), picture = reference;
+    picture.at(0, 0, 0) = 1.19;
+    const RelativeError error = relative_error(picture, reference);
+    CHECK(error.rel_mse == Approx(0.04 / 6).epsilon(1e-12));
+    CHECK(error.relative_rmse == Approx(0.2 / (0.99 * std::sqrt(6.0))).epsilon(1e-12));
+    CHECK(error.non_finite == 0);
+    CHECK(relative_error(reference, reference).rel_mse == 0);
+    // Light in other units: relative_rmse stays, rel_mse nearly does where 0.01 is little.
+    for (auto* image : {&picture, &reference})
+        for (double& value : image->values)
+            value *= 1024;
+    CHECK(relative_error(picture, reference).relative_rmse == Approx(error.relative_rmse).epsilon(1e-12));
+    // In the dark 0.01 keeps it finite, for negative light too.
+    CHECK(relative_error(Image64(1, 1, 1, 0.01), Image64(1, 1, 1)).rel_mse == Approx(1));
+    CHECK(relative_error(Image64(1, 1, 1, 0.0), Image64(1, 1, 1, -0.01)).rel_mse == Approx(0.25));
+    CHECK(relative_error(Image64(1, 1, 1, 0.01), Image64(1, 1, 1)).relative_rmse == infinity);
+    CHECK(relative_error(Image64(1, 1, 1), Image64(1, 1, 1)).relative_rmse == 0);
+}
+
+TEST_CASE("Relative errors leave out alpha and nothing else") {
+    Image64 reference(3, 3, 4, 0.5), picture = reference;
+    picture.at(1, 1, 3) = 0.0;
+    CHECK(relative_error(picture, reference).rel_mse == 0);
+    picture.at(1, 1, 3) = std::nan("");
+    CHECK(relative_error(picture, reference).non_finite == 0);
+    picture.at(1, 1, 2) = reference.at(1, 1, 2) = infinity; // in both: still no error that could be told
+    picture.at(2, 1, 0) = std::nan("");
+    const RelativeError error = relative_error(picture, reference);
+    CHECK(error.non_finite == 2);
+    CHECK(error.rel_mse == infinity);
+    CHECK(error.relative_rmse == infinity);
+    CHECK_THROWS_AS(relative_error(Image64(2, 2, 3), Image64(2, 2, 4)), Error);
+}

@@ -6,6 +6,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -127,6 +128,84 @@ TEST_CASE("diff writes the difference") {
     CHECK(written("gain.png", {"--gain", "5"}).at(3, 1, 0) == 50.0f / 255.0f);
     // 110/255 - 100/255, each rounded to float32.
     CHECK(written("exact.pfm", {}).at(3, 1, 0) == Approx(10.0 / 255).margin(1e-7));
+}
+
+TEST_CASE("diff tells relative errors in linear light") {
+    const TemporaryDirectory scratch;
+    // sRGB codes 188 and 255 are linear 0.5029 and 1: against A, the reference, one pixel of 192 is wrong.
+    const std::string a = png(scratch, "a.png", 3, 188, 188), b = png(scratch, "b.png", 3, 188, 255);
+    const double reference = std::pow((188 / 255.0 + 0.055) / 1.055, 2.4), error = 1 - reference;
+    const Json difference = diff_json(a, b, 1);
+    CHECK(difference["rel_mse"].get<double>()
+          == Approx(std::pow(error / (reference + 0.01), 2) / (width * height)).epsilon(1e-6));
+    CHECK(difference["relative_rmse"].get<double>()
+          == Approx(error / reference / std::sqrt(width * height)).epsilon(1e-6));
+    CHECK(difference["non_finite_light"] == 0);
+    CHECK(!difference.contains("flip"));
+
+    // A NaN in both pictures is no difference, but it is no light either.
+    Image image = constant(width, height, {0.5f, 0.5f, 0.5f});
+    image.at(2, 2, 1) = std::numeric_limits<float>::quiet_NaN();
+    const std::string broken = pfm(scratch, "broken.pfm", image);
+    const Json same = diff_json(broken, broken, 0);
+    CHECK(same["non_finite"] == 0);
+    CHECK(same["non_finite_light"] == 1);
+    CHECK(same["rel_mse"].is_null());
+    CHECK_THAT(run_program({"diff", broken, broken}).out, Catch::Contains("non_finite_light"));
+}
+
+TEST_CASE("diff --flip tells what a viewer sees") {
+    const TemporaryDirectory scratch;
+    const auto field = [&](const std::string& name, float red, float green, float blue) {
+        return pfm(scratch, name, constant(width, height, {red, green, blue}));
+    };
+    const auto flip_of = [&](const std::string& a, const std::string& b, std::vector<std::string> more = {}) {
+        more.insert(more.begin(), {"diff", a, b, "--flip", "--json"});
+        return Json::parse(run_program(more).out)["flip"];
+    };
+    const std::string green = field("green.pfm", 0, 1, 0), blue = field("blue.pfm", 0, 0, 1);
+    const Json largest = flip_of(green, blue);
+    CHECK(largest["mean"].get<double>() == Approx(1));
+    CHECK(largest["weighted_median"].get<double>() == Approx(1));
+    CHECK(largest["pixels_per_degree"].get<double>() == Approx(67.0206).epsilon(1e-5));
+    CHECK(largest["clipped"] == 0);
+    CHECK(flip_of(green, green)["max"] == 0);
+    CHECK(flip_of(green, field("bright.pfm", 0, 9, 0))["clipped"] == width * height);
+    CHECK(flip_of(green, field("nan.pfm", 0, NAN, 0))["mean"].is_null());
+    CHECK(flip_of(green, field("nan.pfm", 0, NAN, 0))["non_finite"] == width * height);
+
+    // 8-bit files are decoded: the same pair as codes and as light.
+    const std::string a = png(scratch, "a.png", 3, 100, 100), b = png(scratch, "b.png", 3, 100, 200);
+    const auto decoded = [&](const std::string& name, const std::string& file) {
+        return pfm(scratch, name, read_image(file).image);
+    };
+    CHECK(flip_of(a, b)["mean"].get<double>()
+          == Approx(flip_of(decoded("a.pfm", a), decoded("b.pfm", b))["mean"].get<double>()).epsilon(1e-5));
+    // Seen from farther away one pixel is less.
+    CHECK(flip_of(a, b, {"--ppd", "200"})["max"] < flip_of(a, b)["max"]);
+    CHECK_THAT(run_program({"diff", a, b, "--flip"}).out, Catch::Contains("mean at 67.02 pixels per degree"));
+}
+
+TEST_CASE("diff --map writes FLIP per pixel") {
+    const TemporaryDirectory scratch;
+    const std::string a = png(scratch, "a.png", 3, 100, 100), b = png(scratch, "b.png", 3, 100, 200);
+    const auto map = [&](const std::string& name) {
+        const Outcome outcome =
+            run_program({"diff", a, b, "--flip", "--map", (scratch / name).string(), "--json"});
+        INFO(outcome.err);
+        REQUIRE(outcome.status == 1);
+        CHECK(Json::parse(outcome.out)["flip"]["max"].get<double>() > 0);
+        return read_data((scratch / name).string());
+    };
+    const Image exact = map("map.exr"), shown = map("map.png");
+    CHECK(exact.channels == 1);
+    CHECK(exact.at(3, 1, 0) == *std::max_element(exact.values.begin(), exact.values.end()));
+    CHECK(shown.channels == 3);
+    CHECK(shown.at(3, 1, 0) > shown.at(15, 11, 0));
+    check_refused(run_program({"diff", a, b, "--map", (scratch / "x.png").string()}), "--flip");
+    check_refused(run_program({"diff", a, b, "--ppd", "60"}), "--flip");
+    check_refused(run_program({"diff", a, b, "--flip", "--ppd", "0"}), "--ppd");
+    check_refused(run_program({"diff", a, b, "--flip", "--map", (scratch / "x.txt").string()}), "x.txt");
 }
 
 TEST_CASE("diff refuses what can't be compared") {

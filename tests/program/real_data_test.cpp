@@ -5,6 +5,7 @@
 #include <image/files.hpp>
 
 #include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
 
 #include <cmath>
 #include <cstdlib>
@@ -92,4 +93,14 @@ TEST_CASE("an HDR panorama glows and keeps its energy") {
     CHECK(is.finite);
     CHECK(is.mean == Approx(was.mean).epsilon(0.02)); // what leaves at the border comes back clamped
     CHECK(is.largest < was.largest);
+}
+
+// NVlabs/flip, images/reference.png and test.png (BSD-3-Clause), put there as flip/reference.png and flip/test.png.
+TEST_CASE("FLIP of its authors' pair of pictures is what they publish") {
+    const std::string reference = data("flip/reference.png"), test = data("flip/test.png");
+    if (reference.empty() || test.empty()) return;
+    const Outcome outcome = run_program({"diff", reference, test, "--flip", "--json"});
+    INFO(outcome.err);
+    const double mean = nlohmann::json::parse(outcome.out)["flip"]["mean"].get<double>();
+    CHECK(mean == Approx(0.159691).margin(2e-6)); // theirs is float32; they say that the last digits differ
 }

@@ -131,17 +131,23 @@ Difference pixel_differences(const Image& a, const Image& b) {
     return difference;
 }
 
-std::string size_text(const Image& image) {
+template<class Number>
+std::string size_text(const BasicImage<Number>& image) {
     return fmt::format("{} x {} pixels of {} channels", image.width, image.height, image.channels);
+}
+
+template<class Number>
+void require_comparable(const BasicImage<Number>& a, const BasicImage<Number>& b) {
+    if (a.width != b.width || a.height != b.height || a.channels != b.channels)
+        throw Error(fmt::format("pictures of different size can't be compared: {} and {}", size_text(a),
+                                size_text(b)));
+    if (a.empty()) throw Error("an empty picture can't be compared");
 }
 
 } // namespace
 
 Difference compare(const Image& a, const Image& b, double peak) {
-    if (a.width != b.width || a.height != b.height || a.channels != b.channels)
-        throw Error(fmt::format("pictures of different size can't be compared: {} and {}", size_text(a),
-                                size_text(b)));
-    if (a.empty()) throw Error("an empty picture can't be compared");
+    require_comparable(a, b);
     if (!(peak > 0)) throw Error(fmt::format("full scale is {}, expected more than 0", peak));
     Difference difference = pixel_differences(a, b);
     difference.psnr = difference.rmse > 0 ? 20 * std::log10(peak / difference.rmse) : infinity;
@@ -150,6 +156,33 @@ Difference compare(const Image& a, const Image& b, double peak) {
     else if (difference.rmse > 0)
         difference.ssim = mean_ssim(a, b, peak);
     return difference;
+}
+
+RelativeError relative_error(const Image64& picture, const Image64& reference) {
+    require_comparable(picture, reference);
+    const auto channels = static_cast<std::size_t>(picture.channels);
+    const std::size_t colors = channels < 3 ? 1 : 3;
+    RelativeError error;
+    double relative = 0, difference = 0, light = 0;
+    for (std::size_t i = 0; i < picture.pixel_count(); ++i) {
+        const double* x = picture.values.data() + i * channels;
+        const double* r = reference.values.data() + i * channels;
+        const auto finite = [](double value) { return std::isfinite(value); };
+        if (!std::all_of(x, x + colors, finite) || !std::all_of(r, r + colors, finite)) ++error.non_finite;
+        for (std::size_t c = 0; c < colors; ++c) {
+            const double square = (x[c] - r[c]) * (x[c] - r[c]), scale = std::fabs(r[c]) + 0.01;
+            relative += square / (scale * scale);
+            difference += square;
+            light += r[c] * r[c];
+        }
+    }
+    if (error.non_finite > 0) {
+        error.rel_mse = error.relative_rmse = infinity;
+    } else if (difference > 0) {
+        error.rel_mse = relative / static_cast<double>(picture.pixel_count() * colors);
+        error.relative_rmse = std::sqrt(difference / light);
+    }
+    return error;
 }
 
 } // namespace postfx

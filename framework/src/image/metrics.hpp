@@ -25,4 +25,19 @@ struct Difference {
 /// Same size and channel count, else Error. `peak`: the value that PSNR and SSIM call full scale.
 Difference compare(const Image& a, const Image& b, double peak = 1.0);
 
+/// How far a picture of linear light is from its reference, in proportion to the light; over the colours,
+/// alpha is left out. Both are infinity if non_finite > 0.
+struct RelativeError {
+    /// Mean of (x - r)^2 / (|r| + 0.01)^2: every pixel in proportion to itself, so shadows weigh as lights do.
+    double rel_mse = 0;
+    /// sqrt(sum (x - r)^2 / sum r^2): all pixels in proportion to the whole picture, so lights weigh most.
+    /// Infinity for a difference from a black reference.
+    double relative_rmse = 0;
+    /// Pixels with a NaN or infinity in either picture, in both too: light that isn't finite has no error.
+    std::size_t non_finite = 0;
+};
+
+/// Same size and channel count, else Error. Not symmetric.
+RelativeError relative_error(const Image64& picture, const Image64& reference);
+
 } // namespace postfx
