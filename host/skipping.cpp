@@ -16,7 +16,7 @@ constexpr std::size_t copy_case = 0, bare_scene_case = 1;
 bool same_work(const Plan& a, const Plan& b) {
     const auto same_pass = [](const Pass& x, const Pass& y) {
         return x.program->key == y.program->key && x.uniform_block == y.uniform_block
-               && x.outputs == y.outputs && x.condition == y.condition;
+               && x.outputs == y.outputs && x.condition == y.condition && x.where == y.where;
     };
     return SceneRenderers::same(a.attachments, b.attachments)
            && std::equal(a.passes.begin(), a.passes.end(), b.passes.begin(), b.passes.end(), same_pass);

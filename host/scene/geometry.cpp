@@ -54,7 +54,7 @@ std::vector<glm::vec2> smoothed(const std::vector<glm::vec2>& points) {
                 b
                 + 0.5f * t
                       * (c - a + t * (2.0f * a - 5.0f * b + 4.0f * c - d + t * (3.0f * (b - c) + d - a)));
-            result.push_back({std::max(point.x, 0.0f), point.y});
+            result.emplace_back(std::max(point.x, 0.0f), point.y);
         }
     }
     result.push_back(points.back());

@@ -5,7 +5,6 @@
 
 #include <cmath>
 #include <numbers>
-#include <vector>
 
 namespace postfx::testing {
 
@@ -43,27 +42,27 @@ private:
         const double scale = std::sqrt((frequency == 0 ? 1.0 : 2.0) / size);
         return scale * std::cos(std::numbers::pi * frequency * (place + 0.5) / size);
     }
-    static std::vector<double> waves_of(int size, bool back) {
-        std::vector<double> table;
+    static Image64 waves_of(int size, bool back) {
+        Image64 table(size, size, 1);
         for (int to = 0; to < size; ++to) {
             for (int from = 0; from < size; ++from)
-                table.push_back(back ? wave(to, from, size) : wave(from, to, size));
+                table.at(from, to, 0) = back ? wave(to, from, size) : wave(from, to, size);
         }
         return table;
     }
     Image64 transformed(const Image64& image, bool back) const {
-        const std::vector<double> across = waves_of(width_, back), along = waves_of(height_, back);
+        const Image64 across = waves_of(width_, back), along = waves_of(height_, back);
         Image64 rows(width_, height_, 1), result(width_, height_, 1);
         for (int y = 0; y < height_; ++y) {
             for (int x = 0; x < width_; ++x) {
                 for (int i = 0; i < width_; ++i)
-                    rows.at(x, y, 0) += across[static_cast<std::size_t>(x * width_ + i)] * image.at(i, y, 0);
+                    rows.at(x, y, 0) += across.at(i, x, 0) * image.at(i, y, 0);
             }
         }
         for (int y = 0; y < height_; ++y) {
             for (int x = 0; x < width_; ++x) {
                 for (int i = 0; i < height_; ++i)
-                    result.at(x, y, 0) += along[static_cast<std::size_t>(y * height_ + i)] * rows.at(x, i, 0);
+                    result.at(x, y, 0) += along.at(i, y, 0) * rows.at(x, i, 0);
             }
         }
         return result;

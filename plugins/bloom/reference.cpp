@@ -93,7 +93,8 @@ Line interpolated_line(const Line& line, std::size_t size, double block) {
 Line smoothed_line(const Line& line, std::size_t size, double extent, const Line& kernel) {
     Line result(size);
     for (std::size_t x = 0; x < size; ++x) {
-        const double nearest = static_cast<double>(x / 2) + 0.5, side = x % 2 == 0 ? -1 : 1;
+        const std::size_t coarse = x / 2;
+        const double nearest = static_cast<double>(coarse) + 0.5, side = x % 2 == 0 ? -1 : 1;
         const double pair = kernel[1] + kernel[2];
         result[x] = pair * mirrored(line, extent, nearest + side * kernel[1] / pair)
                     + kernel[0] * mirrored(line, extent, nearest - side);
@@ -205,7 +206,7 @@ private:
         for (const Pair& row : pairs) {
             for (const Pair& column : pairs) {
                 Image64 mean(1, 1, 3);
-                const long i = 4 * x + column.first, j = 4 * y + row.first;
+                const long i = 4L * x + column.first, j = 4L * y + row.first;
                 const double s = column.share_of_second, t = row.share_of_second;
                 for (int c = 0; c < 3; ++c) {
                     mean.at(0, 0, c) =

@@ -37,30 +37,6 @@ float in_half(double value) {
     return static_cast<float>(std::floor(value / unit) * unit);
 }
 
-Image scaled(Image image, float factor) {
-    for (float& value : image.values)
-        value *= factor;
-    return image;
-}
-
-Image three_channels(const Image& image) {
-    Image result(image.width, image.height, 3);
-    for (int y = 0; y < image.height; ++y) {
-        for (int x = 0; x < image.width; ++x)
-            std::memcpy(result.pixel(x, y), image.pixel(x, y), 3 * sizeof(float));
-    }
-    return result;
-}
-
-Image mirrored(const Image& image) {
-    Image result(image.width, image.height, 3);
-    for (int y = 0; y < image.height; ++y) {
-        for (int x = 0; x < image.width; ++x)
-            std::memcpy(result.pixel(image.width - 1 - x, y), image.pixel(x, y), 3 * sizeof(float));
-    }
-    return result;
-}
-
 struct Moments {
     double sum = 0, x = 0, y = 0; ///< of channel 0; centroid in pixels
 };
@@ -441,8 +417,8 @@ TEST_CASE("emission alone glows; the picture's own light does not") {
         const Image result = run_effect("bloom", input, values);
         const Image64 expected = reference(reference_input("bloom", input, values));
         double sum = 0, expected_sum = 0;
-        for (std::size_t i = 0; i < expected.values.size(); ++i)
-            expected_sum += expected.values[i] - 9;
+        for (double value : expected.values)
+            expected_sum += value - 9;
         for (float value : three_channels(result).values)
             sum += value - 9;
         CHECK(sum == Approx(expected_sum).epsilon(1e-3)); // rounding of values near 9 to float, 4096 of them

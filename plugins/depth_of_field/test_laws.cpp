@@ -30,15 +30,6 @@ double layered(int x, int y) {
     return std::hypot(x - 60, y - 50) < 17 ? 4.0 : distance_with(0.02 * y - 0.9);
 }
 
-Image mirrored(const Image& image) {
-    Image result = image;
-    for (int y = 0; y < image.height; ++y) {
-        for (int x = 0; x < image.width; ++x)
-            std::copy_n(image.pixel(image.width - 1 - x, y), image.channels, result.pixel(x, y));
-    }
-    return result;
-}
-
 Image64 doubled_precision(const Image& image) {
     return convert<double>(three_channels(image));
 }
@@ -112,12 +103,8 @@ TEST_CASE("light is scaled by powers of two bit for bit, and adds up") {
         INFO(level_names[level]);
         const Image once = three_channels(run(level, color, distance));
         for (float factor : {2048.0f, 1.0f / 4096}) {
-            Image bright = color, expected = once;
-            for (float& value : bright.values)
-                value *= factor;
-            for (float& value : expected.values)
-                value *= factor;
-            CHECK(same_bits(three_channels(run(level, bright, distance)), expected));
+            const Image result = run(level, scaled(color, factor), distance);
+            CHECK(same_bits(three_channels(result), scaled(once, factor)));
         }
         Image together = color;
         for (std::size_t i = 0; i < together.values.size(); ++i)

@@ -4,7 +4,6 @@
 #include <testing.hpp>
 
 #include <algorithm>
-#include <cstring>
 #include <functional>
 #include <limits>
 
@@ -16,15 +15,6 @@ inline constexpr int gathering_levels[] = {low, medium, high, ultra};
 
 inline constexpr float infinity = std::numeric_limits<float>::infinity();
 inline constexpr float not_a_number = std::numeric_limits<float>::quiet_NaN();
-
-inline Image three_channels(const Image& image) {
-    Image result(image.width, image.height, 3);
-    for (int y = 0; y < image.height; ++y) {
-        for (int x = 0; x < image.width; ++x)
-            std::memcpy(result.pixel(x, y), image.pixel(x, y), 3 * sizeof(float));
-    }
-    return result;
-}
 
 /// Raw depth samples for distances in metres.
 inline Image depth_of(int width, int height, const Camera& camera,

@@ -168,8 +168,8 @@ TEST_CASE("the level reference shares a point's light among pixels as the disc c
                     constexpr int fine = 64; // places in the pixel
                     int inside = 0;
                     for (int i = 0; i < fine * fine; ++i) {
-                        const double u = x - 32.5 + (i % fine + 0.5) / fine,
-                                     v = y - 32.5 + (i / fine + 0.5) / fine;
+                        const int row = i / fine, column = i % fine;
+                        const double u = x - 32.5 + (column + 0.5) / fine, v = y - 32.5 + (row + 0.5) / fine;
                         inside += std::hypot(u, v) < diameter / 2;
                     }
                     const double area = std::numbers::pi * diameter * diameter / 4;

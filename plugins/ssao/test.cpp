@@ -148,24 +148,6 @@ bool all_finite(const Image& image) {
     return true;
 }
 
-Image three_channels(const Image& image) {
-    Image result(image.width, image.height, 3);
-    for (int y = 0; y < image.height; ++y) {
-        for (int x = 0; x < image.width; ++x)
-            std::memcpy(result.pixel(x, y), image.pixel(x, y), 3 * sizeof(float));
-    }
-    return result;
-}
-
-Image mirrored(const Image& image) {
-    Image result(image.width, image.height, image.channels);
-    for (int y = 0; y < image.height; ++y) {
-        for (int x = 0; x < image.width; ++x)
-            std::copy_n(image.pixel(x, y), image.channels, result.pixel(image.width - 1 - x, y));
-    }
-    return result;
-}
-
 } // namespace
 
 TEST_CASE("every level approximates the float64 reference, better from level to level") {

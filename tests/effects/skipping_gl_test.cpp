@@ -350,7 +350,7 @@ TEST_CASE("on either side of each threshold the picture is what all would give")
             if (parameter.kind != ParameterKind::number) continue;
             for (const auto& [name, input] : poor_inputs()) {
                 Chain chain = alone(catalog(), effect->id);
-                const auto at = [&](double value) {
+                const auto at = [&, &input = input](double value) {
                     chain.entries.front().set(parameter.id, value);
                     return is_skipped(chain, input);
                 };

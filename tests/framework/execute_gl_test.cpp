@@ -99,7 +99,7 @@ TEST_CASE("every number of a parameter struct arrives") {
     }
 }
 
-TEST_CASE("two instances in one pass have their own values") {
+TEST_CASE("two instances in one pass have their own values, as uniforms and compiled in") {
     const Quiet quiet;
     Chain chain = chain_of({"tint", "tint"});
     chain.find("tint")->values[1] = {2, 4, 1, 0};
@@ -107,10 +107,15 @@ TEST_CASE("two instances in one pass have their own values") {
     chain.find("tint_2")->values[1] = {0.5, 0.5, 3, 0};
     chain.find("tint_2")->set("amount", 1);
     const Image color = postfx::testing::constant(3, 2, {1.0f, 2.0f, 3.0f});
-    const Image result = draw(chain, color, facts_of(color));
-    CHECK(result.at(2, 1, 0) == 1);
-    CHECK(result.at(2, 1, 1) == 4);
-    CHECK(result.at(2, 1, 2) == 9);
+    Facts facts = facts_of(color);
+    for (bool fold : {false, true}) {
+        facts.fold = fold;
+        const Image result = draw(chain, color, facts);
+        CAPTURE(fold);
+        CHECK(result.at(2, 1, 0) == 1);
+        CHECK(result.at(2, 1, 1) == 4);
+        CHECK(result.at(2, 1, 2) == 9);
+    }
 }
 
 TEST_CASE("a pass with two outputs writes both") {
@@ -323,22 +328,6 @@ TEST_CASE("folded values give what uniforms give") {
     const Image packed = draw(chain_of({"tint", "pack"}), black, facts);
     facts.fold = true;
     CHECK(postfx::testing::same_bits(draw(chain_of({"tint", "pack"}), black, facts), packed));
-}
-
-TEST_CASE("two instances in one folded pass have their own values") {
-    const Quiet quiet;
-    Chain chain = chain_of({"tint", "tint"});
-    chain.find("tint")->values[1] = {2, 4, 1, 0};
-    chain.find("tint")->set("amount", 1);
-    chain.find("tint_2")->values[1] = {0.5, 0.5, 3, 0};
-    chain.find("tint_2")->set("amount", 1);
-    const Image color = postfx::testing::constant(3, 2, {1.0f, 2.0f, 3.0f});
-    Facts facts = facts_of(color);
-    facts.fold = true;
-    const Image result = draw(chain, color, facts);
-    CHECK(result.at(2, 1, 0) == 1);
-    CHECK(result.at(2, 1, 1) == 4);
-    CHECK(result.at(2, 1, 2) == 9);
 }
 
 // ---- watching for what is no number

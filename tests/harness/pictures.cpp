@@ -49,6 +49,30 @@ Image impulse(int width, int height, int x, int y, float value) {
     return image;
 }
 
+Image three_channels(const Image& image) {
+    Image result(image.width, image.height, 3);
+    for (int y = 0; y < image.height; ++y) {
+        for (int x = 0; x < image.width; ++x)
+            std::memcpy(result.pixel(x, y), image.pixel(x, y), 3 * sizeof(float));
+    }
+    return result;
+}
+
+Image mirrored(const Image& image) {
+    Image result(image.width, image.height, image.channels);
+    for (int y = 0; y < image.height; ++y) {
+        for (int x = 0; x < image.width; ++x)
+            std::copy_n(image.pixel(x, y), image.channels, result.pixel(image.width - 1 - x, y));
+    }
+    return result;
+}
+
+Image scaled(Image image, float factor) {
+    for (float& value : image.values)
+        value *= factor;
+    return image;
+}
+
 Worst worst_difference(const Image& result, const Image64& expected) {
     if (result.width != expected.width || result.height != expected.height) {
         throw Error(fmt::format("{}x{} compared with {}x{}", result.width, result.height, expected.width,

@@ -91,6 +91,11 @@ Image noise(int width, int height, float low, float high, std::uint32_t seed = 1
 /// Black with one pixel of that value.
 Image impulse(int width, int height, int x, int y, float value);
 
+Image three_channels(const Image& image);
+Image mirrored(const Image& image);
+/// Every number, alpha too, times the factor.
+Image scaled(Image image, float factor);
+
 // ---- comparing
 
 struct Worst {

@@ -202,5 +202,9 @@ TEST_CASE("bounds of a large scene cost far less than a frame") {
         view_bounds.at(0.1 * i, camera, 1280, 720);
         best = std::min(best, gl::HostTime::now().cpu_ms - start.cpu_ms);
     }
-    CHECK(best < 1);
+#if defined(NDEBUG) && !defined(__SANITIZE_ADDRESS__)
+    CHECK(best < 1); // ms
+#else
+    CHECK(best < 100); // unoptimised; only an accident is caught
+#endif
 }

@@ -43,7 +43,7 @@ Command command_of(const Pass& pass) {
 template<class Element>
 std::vector<std::byte> bytes_of(const std::vector<Element>& elements) {
     std::vector<std::byte> bytes(elements.size() * sizeof(Element));
-    std::memcpy(bytes.data(), elements.data(), bytes.size());
+    if (!bytes.empty()) std::memcpy(bytes.data(), elements.data(), bytes.size());
     return bytes;
 }
 

@@ -22,8 +22,8 @@ std::vector<glm::vec3> bent(Random& random, glm::vec3 foot, glm::vec3 tip) {
     for (int i = 0; i < stem_points; ++i) {
         const float t = static_cast<float>(i) / (stem_points - 1);
         const glm::vec3 out = glm::vec3(tip.x - foot.x, 0, tip.z - foot.z) * std::pow(t, 1.6f);
-        points.push_back({foot.x + out.x + waver.x * std::sin(two_pi * t), foot.y + (tip.y - foot.y) * t,
-                          foot.z + out.z + waver.z * std::sin(two_pi * t)});
+        points.emplace_back(foot.x + out.x + waver.x * std::sin(two_pi * t), foot.y + (tip.y - foot.y) * t,
+                            foot.z + out.z + waver.z * std::sin(two_pi * t));
     }
     return points;
 }
