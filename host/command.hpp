@@ -11,7 +11,7 @@
 namespace postfx::host {
 
 /// How a command ends when nothing went wrong. Errors leave by exception: postfx::Error gives status 2.
-enum class Status { success = 0, differs = 1 };
+enum class Status { success = 0, differs = 1, interrupted = 130 };
 
 class Command {
 public:

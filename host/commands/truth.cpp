@@ -1,0 +1,216 @@
+// postfx truth: what an effect ought to give, slowly and by other means.
+#include "command.hpp"
+#include "effect_text.hpp"
+#include "gl_session.hpp"
+#include "options.hpp"
+#include "picture.hpp"
+#include "resources.hpp"
+
+#include "truths/truth_run.hpp"
+
+#include <gl/clock.hpp>
+#include <image/files.hpp>
+
+#include <postfx/error.hpp>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <csignal>
+
+namespace fs = std::filesystem;
+
+namespace postfx::host {
+namespace {
+
+volatile std::sig_atomic_t asked_to_stop = 0;
+
+/// While it lives, the first interruption only asks to stop; a second one ends the program as ever.
+class StopOnInterrupt {
+public:
+    StopOnInterrupt() {
+        asked_to_stop = 0;
+        struct sigaction action = {};
+        action.sa_handler = [](int) { asked_to_stop = 1; };
+        action.sa_flags = static_cast<int>(SA_RESETHAND);
+        sigaction(SIGINT, &action, &before_);
+    }
+    ~StopOnInterrupt() { sigaction(SIGINT, &before_, nullptr); }
+    StopOnInterrupt(const StopOnInterrupt&) = delete;
+    StopOnInterrupt& operator=(const StopOnInterrupt&) = delete;
+
+private:
+    struct sigaction before_ = {};
+};
+
+std::string list_of_truths() {
+    std::vector<std::string> lines;
+    for (const RegisteredTruth& truth : registered_truths())
+        lines.push_back(fmt::format("{} ({}): {}", truth.effect, truth.kind, truth.help));
+    std::sort(lines.begin(), lines.end());
+    return fmt::format("There are truths of\n  {}\n", fmt::join(lines, "\n  "));
+}
+
+class TruthCommand : public Command {
+public:
+    void declare(CLI::App& app) override {
+        app.add_option("SCENE", scene_,
+                       "A name from configs/scenes/, a scene file, or a model (glTF, OBJ, ...)")
+            ->required();
+        app.add_option("EFFECT", effect_, "An effect, or as in a chain file: 'glow: {intensity: 0.2}'")
+            ->required();
+        app.add_option("--kind", kind_,
+                       "scene: the phenomenon itself; layer: the best that the effect's own inputs allow")
+            ->check(CLI::IsMember({"scene", "layer"}))
+            ->capture_default_str();
+        app.add_option("--set", values_, "A value of the effect (repeatable)")
+            ->type_name("NAME=VALUE")
+            ->default_str("")
+            ->allow_extra_args(false);
+        app.add_option("--size", size_, "Of the picture, pixels")->type_name("WxH")->capture_default_str();
+        app.add_option("--time", time_, "Seconds after the scene's start")->capture_default_str();
+        app.add_option("--samples", samples_, "Of the truth, an even number; its own default without")
+            ->check(CLI::Range(2, 1 << 24))
+            ->type_name("N")
+            ->default_str("");
+        app.add_option("--scene-samples", scene_samples_,
+                       "Of the scene per pixel, as in the pictures that are to be compared")
+            ->check(CLI::IsMember({1, 4}))
+            ->capture_default_str();
+        app.add_option("-o,--output", output_, "Picture: .exr, .pfm, .hdr (scene-linear) or .png")
+            ->type_name("FILE");
+        app.add_option("--store", store_, "Where sums are kept; truths/ in the user's cache without")
+            ->type_name("DIR")
+            ->default_str("");
+        app.add_flag("--fresh", fresh_, "Begin again, whatever is kept");
+        app.add_flag("--json", json_, "As JSON");
+        catalog_options_.declare(app);
+        app.footer(list_of_truths()
+                   + "Sums are kept while they grow: a command that was stopped (Ctrl-C) goes on when it is "
+                     "given again, and\n"
+                     "one that had ended is answered at once.\n"
+                     "own_error: root mean square of the truth's own error, as two halves of its samples "
+                     "tell it, as a share of\n"
+                     "the picture's root mean square.\n"
+                     "JSON: {effect, kind, scene, size, description, samples, own_error, root_mean_square, "
+                     "sums, output}; own_error is\n"
+                     "null below two samples.\n"
+                     "Status: 0 done, 2 bad input, 130 stopped before the last sample (a picture so far is "
+                     "written).");
+    }
+
+    Status run() override {
+        if (!output_.empty()) check_writable_kind(output_);
+        const Catalog catalog = catalog_options_.load();
+        const TruthRequest request = read_request(catalog);
+        const RegisteredTruth& registered = find_truth(request.entry.effect->id, kind_);
+
+        const GlSession session;
+        TruthRun run(registered, request, samples_ > 0 ? samples_ : registered.samples);
+        const fs::path file = store() / run.file_name();
+        if (!fresh_) run.resume(file);
+        const int before = run.done();
+        sum_up(run, file);
+        if (run.done() > before) run.save(file);
+        if (run.done() == 0) return Status::interrupted;
+        tell(run.result(), request, file);
+        if (run.complete()) return Status::success;
+        fmt::print(stderr, "postfx: stopped at {} of {} samples; the same command goes on from there\n",
+                   run.done(), run.samples());
+        return Status::interrupted;
+    }
+
+private:
+    /// Sums are saved now and then, so that not even a crash costs more than that.
+    static void sum_up(TruthRun& run, const fs::path& file) {
+        constexpr double seconds_between_saves = 20;
+        const StopOnInterrupt guard;
+        ProgressBar progress("truth", run.samples() - run.done());
+        double saved = gl::HostTime::now().wall_ms;
+        while (!run.complete() && asked_to_stop == 0) {
+            run.step();
+            progress.advance();
+            if (gl::HostTime::now().wall_ms - saved > 1000 * seconds_between_saves) {
+                run.save(file);
+                saved = gl::HostTime::now().wall_ms;
+            }
+        }
+    }
+
+    TruthRequest read_request(const Catalog& catalog) const {
+        Chain chain;
+        parse_chain_entry(effect_text(), "EFFECT", catalog, chain);
+        const Size size = parse_size(size_);
+        return {.scene = open_scene(scene_, data_directory() / "configs/scenes"),
+                .time = time_,
+                .width = size.width,
+                .height = size.height,
+                .scene_samples = scene_samples_,
+                .entry = std::move(chain.entries.at(0))};
+    }
+
+    /// --set a=1 --set b=2 as a chain file has it.
+    std::string effect_text() const {
+        if (values_.empty()) return effect_;
+        if (effect_.find_first_of(":{") != std::string::npos)
+            throw Error("values are given by --set or in EFFECT's own {}, not both");
+        std::vector<std::string> values;
+        for (const std::string& value : values_) {
+            const std::size_t equals = value.find('=');
+            if (equals == std::string::npos)
+                throw Error(fmt::format("--set \"{}\" is not NAME=VALUE, such as radius=0.5", value));
+            values.push_back(fmt::format("{}: {}", value.substr(0, equals), value.substr(equals + 1)));
+        }
+        return fmt::format("{}: {{{}}}", effect_, fmt::join(values, ", "));
+    }
+
+    fs::path store() const {
+        const fs::path folder = !store_.empty() ? fs::path(store_) : cache_directory() / "truths";
+        if (store_.empty() && cache_directory().empty())
+            throw Error("there is no home for a cache; name a folder for the sums with --store");
+        std::error_code error;
+        fs::create_directories(folder, error);
+        if (error)
+            throw Error(Place{.file = folder.string()}, fmt::format("can't be made: {}", error.message()));
+        return folder;
+    }
+
+    void tell(const TruthResult& result, const TruthRequest& request, const fs::path& sums) const {
+        if (!output_.empty()) write_image(output_, convert<float>(result.picture));
+        if (!json_) {
+            fmt::print("{} of {}, {}: {}\n", request.entry.effect->id, request.scene.name, kind_,
+                       result.description);
+            fmt::print("  own error {:.3g}, root mean square {:.6g}\n", result.own_error,
+                       result.root_mean_square);
+            if (!output_.empty()) fmt::print("  wrote {}\n", output_);
+            return;
+        }
+        const Json json = {
+            {"effect", request.entry.effect->id},
+            {"kind", kind_},
+            {"scene", request.scene.name},
+            {"size", fmt::format("{}x{}", request.width, request.height)},
+            {"description", result.description},
+            {"samples", result.samples},
+            {"own_error", std::isfinite(result.own_error) ? Json(result.own_error) : Json()},
+            {"root_mean_square", result.root_mean_square},
+            {"sums", sums.string()},
+            {"output", output_.empty() ? Json() : Json(output_)},
+        };
+        fmt::print("{}\n", json.dump(2));
+    }
+
+    CatalogOptions catalog_options_;
+    std::string scene_, effect_, kind_ = "scene", size_ = "480x270", output_, store_;
+    std::vector<std::string> values_;
+    double time_ = 0;
+    int samples_ = 0, scene_samples_ = 4;
+    bool fresh_ = false, json_ = false;
+};
+
+const Register<TruthCommand> registered("truth", "What an effect ought to give, found slowly by other means");
+
+} // namespace
+} // namespace postfx::host

@@ -1,0 +1,29 @@
+#include "drawn_scene.hpp"
+
+#include <gl/objects.hpp>
+
+#include <postfx/error.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace postfx::host {
+
+Image read_attachment(const SceneFrame& frame, const std::string& name, int width, int height) {
+    for (const SceneAttachment& attachment : frame.attachments) {
+        if (attachment.name == name)
+            return gl::read_texture(attachment.texture, width, height, attachment.format);
+    }
+    throw Error(fmt::format("the scene was drawn without \"{}\"", name));
+}
+
+Image64 read_light(const SceneFrame& frame, const std::string& name, int width, int height) {
+    const Image image = read_attachment(frame, name, width, height);
+    Image64 light(width, height, 3);
+    for (std::size_t i = 0; i < image.pixel_count(); ++i)
+        std::copy_n(&image.values[i * image.channels], 3, &light.values[3 * i]);
+    return light;
+}
+
+} // namespace postfx::host

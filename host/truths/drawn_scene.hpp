@@ -1,0 +1,19 @@
+// A drawn scene's attachments on the CPU.
+#pragma once
+
+#include <scene/renderer.hpp>
+
+#include <postfx/image.hpp>
+
+#include <string>
+
+namespace postfx::host {
+
+/// One attachment of a frame of that size, with the channels of its format. Waits for the GPU. Throws Error when the
+/// frame has none of that name.
+Image read_attachment(const SceneFrame& frame, const std::string& name, int width, int height);
+
+/// The first 3 channels.
+Image64 read_light(const SceneFrame& frame, const std::string& name, int width, int height);
+
+} // namespace postfx::host

@@ -1,0 +1,34 @@
+#include "truth.hpp"
+
+#include <postfx/error.hpp>
+
+#include <fmt/format.h>
+
+namespace postfx::host {
+
+double TruthRequest::value(std::string_view parameter) const {
+    const auto index = entry.effect->find_parameter(parameter);
+    if (!index)
+        throw Error(Place{.effect = entry.effect->id},
+                    fmt::format("there is no parameter \"{}\"", parameter));
+    return entry.values[*index][0];
+}
+
+std::vector<RegisteredTruth>& registered_truths() {
+    static std::vector<RegisteredTruth> truths;
+    return truths;
+}
+
+const RegisteredTruth& find_truth(const std::string& effect, const std::string& kind) {
+    std::string others, kinds;
+    for (const RegisteredTruth& truth : registered_truths()) {
+        if (truth.effect == effect && truth.kind == kind) return truth;
+        if (truth.effect == effect) kinds += (kinds.empty() ? "" : ", ") + truth.kind;
+        others += fmt::format("{}{} ({})", others.empty() ? "" : ", ", truth.effect, truth.kind);
+    }
+    if (!kinds.empty())
+        throw Error(fmt::format("{} has no truth of kind \"{}\"; it has {}", effect, kind, kinds));
+    throw Error(fmt::format("{} has no truth; there are {}", effect, others));
+}
+
+} // namespace postfx::host
