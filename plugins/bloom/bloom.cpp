@@ -166,7 +166,7 @@ public:
                        mode() == emission ? "brightest emission" : "brightest light",
                        mode() == emission ? "none" : "start of the knee")
             .reads("source", source(), "nearest")
-            .value("knee_start", has_threshold() == 1 ? knee_start() : 0);
+            .value("dark", dark());
     }
 
     /// The image that glows, at the picture's size: read as it is, or made by a pass.
@@ -221,6 +221,8 @@ private:
     Mode mode() const { return static_cast<Mode>(in_.choice("mode")); }
     int has_threshold() const { return mode() == threshold ? 1 : 0; }
     int has_guard() const { return in_.number("firefly_guard") > 0 ? 1 : 0; }
+    /// Nothing up to this brightness glows, also where filtering between pixels rounds up.
+    double dark() const { return has_threshold() == 1 ? knee_start() * (1 - 1e-6) : 0; }
     double knee_start() const { return in_.number("threshold") * (1 - in_.number("knee")); }
     double knee_end() const { return in_.number("threshold") * (1 + in_.number("knee")); }
 
