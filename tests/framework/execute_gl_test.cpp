@@ -7,8 +7,10 @@
 #include <temporary_directory.hpp>
 
 #include <bit>
+#include <chrono>
 #include <cmath>
 #include <filesystem>
+#include <fstream>
 #include <iterator>
 #include <limits>
 
@@ -379,4 +381,17 @@ TEST_CASE("a NaN of the input is nobody's fault") {
     CHECK(!(*found)[0].made_here);
     CHECK((*found)[1].name == "tint");
     CHECK(!(*found)[1].made_here);
+}
+
+TEST_CASE("the program cache forgets what was not used longest") {
+    const TemporaryDirectory scratch;
+    for (int i = 0; i < 1001; ++i)
+        std::ofstream(scratch.path() / ("old_" + std::to_string(i) + ".program")) << "old";
+    const fs::path kept = scratch.path() / "note.txt", oldest = scratch.path() / "old_7.program";
+    std::ofstream(kept) << "not a program";
+    fs::last_write_time(oldest, fs::file_time_type::clock::now() - std::chrono::hours(1));
+    const Executor executor(scratch.path());
+    CHECK(files_in(scratch.path()).size() == 500 + 1);
+    CHECK(fs::exists(kept));
+    CHECK(!fs::exists(oldest));
 }

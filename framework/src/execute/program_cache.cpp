@@ -14,6 +14,9 @@
 #include <fstream>
 #include <functional>
 #include <iterator>
+#include <system_error>
+#include <utility>
+#include <vector>
 
 namespace postfx {
 namespace {
@@ -24,6 +27,27 @@ void main() {
     gl_Position = vec4(gl_VertexID == 1 ? 3.0 : -1.0, gl_VertexID == 2 ? 3.0 : -1.0, 0.0, 1.0);
 }
 )";
+
+} // namespace
+
+namespace {
+
+/// Every set of compiled-in values is a file of its own; beyond so many, the half that was not used longest goes.
+constexpr std::size_t most_files = 1000;
+
+void forget_oldest(const std::filesystem::path& directory) {
+    namespace fs = std::filesystem;
+    std::error_code error; // a cache that can't be tidied costs space, nothing else
+    std::vector<std::pair<fs::file_time_type, fs::path>> files;
+    for (const auto& entry : fs::directory_iterator(directory, error)) {
+        if (entry.path().extension() == ".program")
+            files.emplace_back(entry.last_write_time(error), entry.path());
+    }
+    if (files.size() <= most_files) return;
+    std::sort(files.begin(), files.end());
+    for (std::size_t i = 0; i < files.size() - most_files / 2; ++i)
+        fs::remove(files[i].second, error);
+}
 
 } // namespace
 
@@ -40,6 +64,7 @@ ProgramCache::ProgramCache(std::filesystem::path directory) : directory_(std::mo
     } else {
         directory_.clear(); // the driver gives no binaries
     }
+    if (!directory_.empty()) forget_oldest(directory_);
 }
 
 namespace {
@@ -105,7 +130,10 @@ gl::Program ProgramCache::load(const ProgramSource& source) const {
                     static_cast<GLsizei>(bytes.size() - head - length));
     GLint linked = 0;
     glGetProgramiv(program.name(), GL_LINK_STATUS, &linked);
-    return linked ? std::move(program) : gl::Program{};
+    if (!linked) return {};
+    std::error_code error; // it was used: the oldest are forgotten first
+    std::filesystem::last_write_time(file_of(source), std::filesystem::file_time_type::clock::now(), error);
+    return program;
 }
 
 void ProgramCache::save(const ProgramSource& source, const gl::Program& program) const {
