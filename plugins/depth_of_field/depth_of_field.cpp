@@ -316,7 +316,8 @@ bool is_sharp_anywhere(const postfx::Request& in, postfx::Builder& out, const Le
         return out.not_called_for("exact", "the largest circle of confusion is " + std::to_string(largest)
                                                + " pixels, up to 1 counts as sharp");
     }
-    out.skip_when("exact", "depth_of_field_sharp.glsl", "largest circle of confusion [px]", "sharp up to")
+    out.skip_when("exact", "depth_of_field_sharp.glsl", "largest circle of confusion [px]",
+                  "what counts as sharp")
         .reads("depth", out.attachment("depth"), "nearest")
         .value("circle", scale, focus, lens.sky, shift)
         .value("limit", limit)

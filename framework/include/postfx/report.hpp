@@ -13,7 +13,7 @@ struct PassReport {
     std::string name;
     std::vector<std::string> effects;
     int width = 0, height = 0;
-    std::string format;
+    std::string format; ///< of its first output; "census" or "decision" for passes that draw nothing
     std::vector<std::string> reads; ///< names of what it samples: attachments, or the pass that wrote it
     std::optional<double> cpu_ms;   ///< CPU time of all threads, profile mode
     std::optional<double> wall_ms;  ///< profile mode
@@ -45,8 +45,9 @@ struct Report {
 Report describe(const Plan& plan);
 
 /// {"effects": [{"id", "name", "status", "moment", "kind", "reason"}], "passes": [{"name", "effects", "width",
-/// "height", "format", "reads", "condition", "drawn", "tiles", "tiles_drawn", "cpu_ms", "wall_ms", "gpu_ms"}], "clock", "texture_bytes", "warnings", "nonfinite": [{"name", "pixels", "x", "y",
-/// "made_here"}]}; what was not measured or watched is null.
+/// "height", "format", "reads", "condition", "drawn", "tiles", "tiles_drawn", "cpu_ms", "wall_ms", "gpu_ms"}],
+/// "clock", "texture_bytes", "warnings", "nonfinite": [{"name", "pixels", "x", "y", "made_here"}]}; what was not
+/// measured or watched is null.
 std::string report_json(const Report& report);
 /// The same for people.
 std::string report_text(const Report& report);

@@ -59,6 +59,30 @@ std::string time_text(const PassReport& pass) {
     return text;
 }
 
+std::string reads_text(const PassReport& pass) {
+    return pass.reads.empty() ? "" : fmt::format("  reads {}", fmt::join(pass.reads, ", "));
+}
+
+/// A pixel format, or what else comes out of a pass.
+std::string what_it_makes(const Pass& pass) {
+    switch (pass.kind) {
+    case PassKind::draw:
+        return std::string(format_info(pass.format).name);
+    case PassKind::census:
+        return "census";
+    case PassKind::decide:
+        return "decision";
+    }
+    return "";
+}
+
+std::string census_name(const Plan& plan, int slot) {
+    const auto counted = std::find_if(plan.passes.begin(), plan.passes.end(), [&](const Pass& pass) {
+        return pass.kind == PassKind::census && pass.slot == slot;
+    });
+    return counted->name;
+}
+
 std::string tile_text(const PassReport& pass) {
     if (pass.tiles == 0) return "";
     if (!pass.tiles_drawn) return fmt::format("  in some of {} tiles", pass.tiles);
@@ -102,13 +126,15 @@ Report describe(const Plan& plan) {
         described.height = pass.height;
         described.condition = condition_text(plan, pass.condition);
         described.tiles = pass.tiles_across * pass.tiles_down;
-        described.format = format_info(pass.format).name;
+        described.format = what_it_makes(pass);
         for (const PassInput& input : pass.inputs) {
             std::string name = source_name(plan, i, input.image);
             if (std::find(described.reads.begin(), described.reads.end(), name) == described.reads.end()) {
                 described.reads.push_back(std::move(name));
             }
         }
+        for (int slot : pass.censuses)
+            described.reads.push_back(census_name(plan, slot));
         report.passes.push_back(std::move(described));
     }
     return report;
@@ -176,10 +202,9 @@ std::string report_text(const Report& report) {
     text += "passes\n";
     for (const PassReport& pass : report.passes) {
         if (!pass.drawn.value_or(true)) continue;
-        text +=
-            fmt::format("  {:<{}}  {:>4}x{:<4} {:<10}{}  reads {}{}{}\n", pass.name, pass_width, pass.width,
-                        pass.height, pass.format, time_text(pass), fmt::join(pass.reads, ", "),
-                        tile_text(pass), pass.condition.empty() || pass.drawn ? "" : "  " + pass.condition);
+        text += fmt::format("  {:<{}}  {:>4}x{:<4} {:<10}{}{}{}{}\n", pass.name, pass_width, pass.width,
+                            pass.height, pass.format, time_text(pass), reads_text(pass), tile_text(pass),
+                            pass.condition.empty() || pass.drawn ? "" : "  " + pass.condition);
     }
     text += fmt::format("textures  {:.1f} MiB\nclock     {}\n",
                         static_cast<double>(report.texture_bytes) / (1024 * 1024), report.clock);
