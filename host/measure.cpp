@@ -1,5 +1,7 @@
 #include "measure.hpp"
 
+#include <gl/full_screen.hpp>
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -9,12 +11,6 @@
 
 namespace postfx::host {
 namespace {
-
-constexpr const char* whole_screen = "#version 450 core\n"
-                                     "void main() {\n"
-                                     "    gl_Position = vec4(gl_VertexID == 1 ? 3.0 : -1.0,\n"
-                                     "                       gl_VertexID == 2 ? 3.0 : -1.0, 0.0, 1.0);\n"
-                                     "}\n";
 
 constexpr const char* copy_shader =
     "#version 450 core\n"
@@ -59,7 +55,7 @@ std::vector<std::string> key_of(const std::vector<std::string>& attachments) {
 PlainPass::PlainPass(int width, int height, Format format, const std::string& fragment,
                      const std::string& name)
     : target_(width, height, format), framebuffer_(gl::make_framebuffer({target_.name()})),
-      program_(gl::make_program(whole_screen, fragment, name, {name})),
+      program_(gl::make_program(gl::full_screen_vertex_text, fragment, name, {name})),
       vertex_array_(gl::make_vertex_array()), nearest_(gl::make_sampler(false)),
       linear_(gl::make_sampler(true)) {}
 

@@ -297,9 +297,9 @@ void declare_passes(const postfx::Request& in, postfx::Builder& out, const Lens&
     }
 }
 
-/// The largest circle is that of the nearest surface, of the farthest, or of the sky: it only grows with the distance
+/// Is it known that nothing is out of focus? The largest circle is that of the nearest surface, of the farthest, or of the sky: it only grows with the distance
 /// in 1/z from the focus. Asks the frame where the scene's bounds don't tell.
-bool is_sharp_anywhere(const postfx::Request& in, postfx::Builder& out, const Lens& lens) {
+bool is_skipped_as_sharp(const postfx::Request& in, postfx::Builder& out, const Lens& lens) {
     const postfx_camera& camera = in.camera();
     const double focus = focus_metres(in), aperture = aperture_metres(in) * in.height();
     const bool parallel = camera.orthographic != 0;
@@ -343,7 +343,7 @@ void plan(const postfx::Request& in, postfx::Builder& out) {
     }
     if (!in.has("depth")) return out.lacks("there is no depth attachment to focus by");
     Lens lens = in.camera().orthographic ? orthographic_lens(in) : perspective_lens(in);
-    if (shows_picture && is_sharp_anywhere(in, out, lens)) return;
+    if (shows_picture && is_skipped_as_sharp(in, out, lens)) return;
     lens.limit = std::min(lens.limit, largest_allowed);
     lens.sky = std::min(lens.sky, lens.limit);
     declare_passes(in, out, lens);

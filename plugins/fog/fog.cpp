@@ -64,9 +64,9 @@ bool is_below_a_code(const postfx::Request& in, postfx::Builder& out) {
     const double* color = in.color("color");
     const double codes =
         in.codes_of_share(opacity) + in.codes_of_light(opacity * std::max({color[0], color[1], color[2]}));
-    if (codes > postfx::negligible_codes) return false;
-    return out.not_called_for("code", "the densest fog over the longest ray changes " + std::to_string(codes)
-                                          + " of an 8-bit code at most");
+    return codes <= postfx::negligible_codes
+           && out.not_called_for("code", "the densest fog over the longest ray changes "
+                                             + std::to_string(codes) + " of an 8-bit code at most");
 }
 
 void plan(const postfx::Request& in, postfx::Builder& out) {

@@ -15,9 +15,9 @@ namespace postfx {
 /// What changes from frame to frame without a new plan.
 struct FrameInputs {
     std::vector<std::uint32_t> textures; ///< GL names, in the order of Plan::attachments
-    Camera camera;                       ///< where it is now; same projection as in the plan's facts
-    double time = 0;                     ///< seconds
-    std::uint32_t frame = 0;             ///< counts frames; noise is a function of (pixel, frame, seed)
+    Camera camera; ///< where it is now; same projection as in the plan's facts, whose scene bounds still hold
+    double time = 0;         ///< seconds
+    std::uint32_t frame = 0; ///< counts frames; noise is a function of (pixel, frame, seed)
     std::uint32_t seed = 0;
 };
 

@@ -164,7 +164,8 @@ bool same_structure(const Plan& a, const Plan& b) {
     };
     const auto same_pass = [](const Pass& x, const Pass& y) {
         return x.program->key == y.program->key && x.outputs == y.outputs && x.name == y.name
-               && x.uniform_block.size() == y.uniform_block.size() && x.condition == y.condition;
+               && x.uniform_block.size() == y.uniform_block.size() && x.condition == y.condition
+               && x.where == y.where && x.tile_side == y.tile_side;
     };
     return std::equal(a.targets.begin(), a.targets.end(), b.targets.begin(), b.targets.end(), same_target)
            && std::equal(a.passes.begin(), a.passes.end(), b.passes.begin(), b.passes.end(), same_pass);
@@ -269,7 +270,7 @@ std::uint32_t Executor::run(const FrameInputs& inputs, Timing timing, Watch watc
                 state.watch->count(state.texture(state.current, output, inputs.textures),
                                    plan.passes[i].width, plan.passes[i].height);
             }
-            if (timing == Timing::profile) glFinish(); // not to be counted in the next pass\'s time
+            if (timing == Timing::profile) glFinish(); // not to be counted in the next pass's time
         }
     }
     if (timing == Timing::gpu) state.ring->end_frame();

@@ -3,6 +3,7 @@
 #include <execute/tile_passes.hpp>
 
 #include <gl/context.hpp>
+#include <gl/full_screen.hpp>
 #include <image/files.hpp>
 
 #include <postfx/error.hpp>
@@ -19,17 +20,6 @@
 #include <vector>
 
 namespace postfx {
-namespace {
-
-constexpr std::string_view vertex_text = R"(#version 450 core
-// One triangle that covers the target.
-void main() {
-    gl_Position = vec4(gl_VertexID == 1 ? 3.0 : -1.0, gl_VertexID == 2 ? 3.0 : -1.0, 0.0, 1.0);
-}
-)";
-
-} // namespace
-
 namespace {
 
 /// Every set of compiled-in values is a file of its own; beyond so many, the half that was not used longest goes.
@@ -54,7 +44,7 @@ void forget_oldest(const std::filesystem::path& directory) {
 ProgramCache::ProgramCache(std::filesystem::path directory) : directory_(std::move(directory)) {
     const gl::DeviceInfo device = gl::current_device();
     made_by_ = device.vendor + "\n" + device.renderer + "\n" + device.version;
-    made_by_ += vertex_text;
+    made_by_ += gl::full_screen_vertex_text;
     made_by_ += tile_vertex_text;
     GLint count = 0;
     glGetIntegerv(GL_NUM_PROGRAM_BINARY_FORMATS, &count);
@@ -72,7 +62,7 @@ namespace {
 gl::Program link(const ProgramSource& source) {
     switch (source.kind) {
     case ProgramKind::full_screen:
-        return gl::make_program(vertex_text, source.text, "", source.files);
+        return gl::make_program(gl::full_screen_vertex_text, source.text, "", source.files);
     case ProgramKind::tiles:
         return gl::make_program(tile_vertex_text, source.text, "", source.files);
     case ProgramKind::compute:

@@ -42,6 +42,24 @@ struct WaitingStage {
     int decision = -1;      ///< into Plan::decisions, if the frame decides
 };
 
+/// Files are checked where they are read; values that a host set itself are held to their ranges here.
+ChainEntry within_ranges(ChainEntry entry, std::vector<std::string>& warnings) {
+    for (std::size_t i = 0; i < entry.values.size(); ++i) {
+        const ParameterInfo& parameter = entry.effect->parameters[i];
+        for (int c = 0; c < parameter.components(); ++c) {
+            double& value = entry.values[i][c];
+            const double given = value;
+            value = std::isnan(given) ? parameter.default_value[c]
+                                      : std::clamp(given, parameter.minimum, parameter.maximum);
+            if (value == given) continue;
+            warnings.push_back(fmt::format("{}: {} is {}, which is not within {} to {}; {} is used",
+                                           entry.name, parameter.id, given, parameter.minimum,
+                                           parameter.maximum, value));
+        }
+    }
+    return entry;
+}
+
 /// Walks along the chain once. `stored_` is the picture so far: one image, or, behind effects that the frame decides
 /// on, alternatives of which exactly one holds. `waiting_` are functions of its pixels that were not drawn yet,
 /// because those after them may join them in one pass.
@@ -55,17 +73,17 @@ public:
     };
     using Programs = std::unordered_map<std::string, KnownProgram>;
 
-    Walk(const Facts& facts, Skip skip, Programs& programs)
+    Walk(const Facts& facts, Skip skip, Programs& programs, std::vector<std::string> warnings)
         : facts_(facts), skip_(skip), programs_(programs),
           frame_(frame_block(facts.width, facts.height, facts.camera)) {
+        plan_.warnings = std::move(warnings);
         plan_.width = facts.width;
         plan_.height = facts.height;
         stored_ = {{attachment("color"), {}}};
     }
 
     /// `codes`: how strongly the picture shows changes of what this effect gives.
-    void add(const ChainEntry& given, const Codes& codes) {
-        const ChainEntry entry = within_ranges(given);
+    void add(const ChainEntry& entry, const Codes& codes) {
         plan_.effects.push_back({entry.name, entry.effect->id, EffectStatus::ran, "", "", ""});
         if (!entry.enabled) return skip({"configuration", "exact", "enabled is false"});
         const Recording recording = record(entry, facts_, skip_, codes);
@@ -86,24 +104,6 @@ public:
     }
 
 private:
-    /// Files are checked where they are read; values that a host set itself are held to their ranges here.
-    ChainEntry within_ranges(ChainEntry entry) {
-        for (std::size_t i = 0; i < entry.values.size(); ++i) {
-            const ParameterInfo& parameter = entry.effect->parameters[i];
-            for (int c = 0; c < parameter.components(); ++c) {
-                double& value = entry.values[i][c];
-                const double given = value;
-                value = std::isnan(given) ? parameter.default_value[c]
-                                          : std::clamp(given, parameter.minimum, parameter.maximum);
-                if (value == given) continue;
-                plan_.warnings.push_back(fmt::format("{}: {} is {}, which is not within {} to {}; {} is used",
-                                                     entry.name, parameter.id, given, parameter.minimum,
-                                                     parameter.maximum, value));
-            }
-        }
-        return entry;
-    }
-
     void skip(const Identity& identity) {
         PlannedEffect& planned = plan_.effects.back();
         planned.status = EffectStatus::skipped;
@@ -477,14 +477,16 @@ Plan Planner::plan(const Chain& chain, const Facts& facts) {
     if (facts.width < 1 || facts.height < 1) {
         throw Error(fmt::format("a picture of {}x{} pixels can't be planned", facts.width, facts.height));
     }
-    std::vector<Codes> codes(chain.entries.size() + 1, display_codes());
-    for (std::size_t i = chain.entries.size(); i-- > 0;) {
-        const ChainEntry& entry = chain.entries[i];
-        codes[i] = entry.enabled ? codes_before(entry, facts, codes[i + 1]) : codes[i + 1];
-    }
-    Walk walk(facts, chain.skip, memory_->programs);
-    for (std::size_t i = 0; i < chain.entries.size(); ++i)
-        walk.add(chain.entries[i], codes[i + 1]);
+    std::vector<std::string> warnings;
+    std::vector<ChainEntry> entries;
+    for (const ChainEntry& entry : chain.entries)
+        entries.push_back(within_ranges(entry, warnings));
+    std::vector<Codes> codes(entries.size() + 1, display_codes()); // before each effect, and behind the last
+    for (std::size_t i = entries.size(); i-- > 0;)
+        codes[i] = entries[i].enabled ? codes_before(entries[i], facts, codes[i + 1]) : codes[i + 1];
+    Walk walk(facts, chain.skip, memory_->programs, std::move(warnings));
+    for (std::size_t i = 0; i < entries.size(); ++i)
+        walk.add(entries[i], codes[i + 1]);
     return walk.finish();
 }
 
