@@ -33,7 +33,7 @@ private:
         std::vector<double> inverse_distance;
         for (const float sample : depth.values)
             inverse_distance.push_back(1 / frame.camera.view_z(sample));
-        return {read_light(frame, "color", width, height), std::move(inverse_distance), lens_};
+        return {given_light(request, frame), std::move(inverse_distance), lens_};
     }
 
     ThinLens lens_;

@@ -26,4 +26,8 @@ Image64 read_light(const SceneFrame& frame, const std::string& name, int width, 
     return light;
 }
 
+Image64 given_light(const TruthRequest& request, const SceneFrame& frame) {
+    return request.given ? *request.given : read_light(frame, "color", request.width, request.height);
+}
+
 } // namespace postfx::host

@@ -1,6 +1,8 @@
 // A drawn scene's attachments on the CPU.
 #pragma once
 
+#include "truth.hpp"
+
 #include <scene/renderer.hpp>
 
 #include <postfx/image.hpp>
@@ -13,7 +15,10 @@ namespace postfx::host {
 /// frame has none of that name.
 Image read_attachment(const SceneFrame& frame, const std::string& name, int width, int height);
 
-/// The first 3 channels.
+/// The first 3 channels of an attachment.
 Image64 read_light(const SceneFrame& frame, const std::string& name, int width, int height);
+
+/// The picture that the effect is given: the request's own, else the frame's color.
+Image64 given_light(const TruthRequest& request, const SceneFrame& frame);
 
 } // namespace postfx::host

@@ -55,7 +55,7 @@ public:
         SceneRenderer renderer(request.scene, {.samples = request.scene_samples});
         const SceneFrame frame =
             renderer.render(request.width, request.height, request.time, {"color", "ambient"});
-        color_ = read_light(frame, "color", request.width, request.height);
+        color_ = given_light(request, frame);
         ambient_ = read_light(frame, "ambient", request.width, request.height);
     }
 

@@ -7,6 +7,7 @@
 #include <postfx/chain.hpp>
 #include <postfx/image.hpp>
 
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -21,7 +22,11 @@ struct TruthRequest {
     int width = 0, height = 0;
     int scene_samples =
         4; ///< per pixel of a drawn scene, 1 or 4: as in the pictures that are compared with the truth
-    ChainEntry entry; ///< the effect with its values; its level does not matter
+    ChainEntry entry;        ///< the effect with its values; its level does not matter
+    std::uint32_t frame = 0; ///< as in FrameInputs; for what changes from frame to frame
+    /// The picture that the effect is given, 3 channels of that size; null: the scene as it is drawn. A truth of kind
+    /// "scene" that draws the scene otherwise throws Error when there is one.
+    std::shared_ptr<const Image64> given = nullptr;
 
     /// One of the entry's values. Throws Error when the effect has no such parameter.
     double value(std::string_view parameter) const;
@@ -52,6 +57,8 @@ struct RegisteredTruth {
     std::string kind;
     std::string help;
     int samples; ///< unless told otherwise
+    /// What a picture has in common with it: every pixel, or only its statistics (noise of another making).
+    enum class Compared { pixels, statistics } compared;
     std::unique_ptr<Truth> (*make)(const TruthRequest& request);
 };
 
@@ -65,8 +72,10 @@ const RegisteredTruth& find_truth(const std::string& effect, const std::string& 
 /// made from a request and throws Error when there is no truth of it.
 template<class T>
 struct RegisterTruth {
-    RegisterTruth(std::string effect, std::string kind, std::string help, int samples) {
-        registered_truths().push_back({std::move(effect), std::move(kind), std::move(help), samples,
+    using Compared = RegisteredTruth::Compared;
+    RegisterTruth(std::string effect, std::string kind, std::string help, int samples,
+                  Compared compared = Compared::pixels) {
+        registered_truths().push_back({std::move(effect), std::move(kind), std::move(help), samples, compared,
                                        [](const TruthRequest& request) -> std::unique_ptr<Truth> {
                                            return std::make_unique<T>(request);
                                        }});

@@ -71,9 +71,14 @@ TruthRun::TruthRun(const RegisteredTruth& registered, const TruthRequest& reques
         throw Error(
             fmt::format("{} samples can't be split in two halves; expected an even number from 2", samples));
     truth_ = registered.make(request);
-    key_ = fmt::format("{} {} of {} at {} s, {}x{}, {} per pixel, {} samples: {}", registered.effect,
-                       registered.kind, scene_key(request.scene), request.time, request.width, request.height,
-                       request.scene_samples, samples, truth_->values());
+    key_ =
+        fmt::format("{} {} of {} at {} s, frame {}, {}x{}, {} per pixel, {} samples: {}", registered.effect,
+                    registered.kind, scene_key(request.scene), request.time, request.frame, request.width,
+                    request.height, request.scene_samples, samples, truth_->values());
+    if (request.given) {
+        const std::vector<double>& light = request.given->values;
+        key_ += fmt::format(", given {:016x}", hash(light.data(), light.size() * sizeof(double)));
+    }
     halves_.fill(Image64(request.width, request.height, truth_->channels()));
 }
 
