@@ -39,51 +39,65 @@ constexpr postfx::Parameter parameters[] = {
         .about(
             "How much longer the focal length is for red than for blue, as a share of it; 0.016 is one lens "
             "of crown glass"),
-    postfx::integer("lens_samples", 256)
-        .range(1, 1024)
-        .logarithmic()
-        .about("Points of the lens per pixel, of the level reference; what is left of noise falls with them"),
     postfx::choice("view", views)
         .constant()
         .about("picture, or the circle's diameter [px]: red in front of the focus, blue behind"),
 };
 constexpr const char* attachments[] = {"depth"};
 
-/// Of the levels that gather in reduced layers.
+/// Of a gathered disc, texels: the texel itself.
+constexpr double smallest_radius = 0.5;
+
+/// Of the levels that gather in layers.
 struct Gather {
     int largest_radius; ///< texels; for larger circles the layers get coarser, so that the cost does not grow
     int finest_block;   ///< a texel of the layers is at least so many pixels wide
-    /// 1: every texel of a disc is visited; 2: every second; 4: every fourth. If not all, a pass joins the parts.
-    /// Lights lie behind the focus more often than before it, so that the background gets the denser one.
-    int background_lattice, foreground_lattice;
+    int block_step; ///< and, if not one, a multiple of this: only even ones can be interpolated by the sampler
+    /// Discs of the background are gathered from every second texel from the first radius [texels] on, from every
+    /// fourth from the second on: large ones have texels enough.
+    double thin_from, thinnest_from;
+    /// The foreground's discs are gathered from every texel (1), every second (2) or every fourth (4).
+    int foreground_lattice;
     /// Edge of a tile, texels. A tile and its eight neighbours must hold everything that reaches a texel of the
     /// tile or one beside it: largest_radius + half a texel of edge + 1.
     int tile;
+
+    /// Of a gathered disc: where a texel is a pixel it may be wider than the circle, see own_spread().
+    double widest() const { return largest_radius + 0.1; }
+    int smallest_lattice() const { return thin_from > smallest_radius ? 1 : 2; }
+    /// Does a pass join the parts of lattices?
+    bool joins() const { return thin_from < largest_radius || foreground_lattice > 1; }
 };
+constexpr double never = 99; ///< a radius that no disc has
 
 enum LevelIndex { low, medium, high, ultra, reference, classic };
 constexpr postfx_level levels[] = {
-    postfx::level("low", "Discs of up to 21 samples, in layers of a quarter of the size at 720 rows"),
-    postfx::level("medium", "Discs of up to 69 samples (near: 35), in layers of half the size at 720 rows"),
-    postfx::level("high", "Discs of up to 137 samples, in layers of half the size at 720 rows"),
-    postfx::level("ultra", "Discs of up to 241 samples, in layers of the full size at 720 rows"),
-    postfx::level("reference", "The picture from many points of the lens, one after the other; slow"),
+    postfx::level("low", "Discs of up to 69 samples, in layers of a quarter of the size at 720 rows"),
+    postfx::level("medium", "Discs of up to 69 samples (near: 45), in layers of half the size at 720 rows"),
+    postfx::level("high", "Discs of up to 177 samples, in layers of half the size at 720 rows"),
+    postfx::level("ultra", "Discs of up to 169 samples, in layers of the full size at 720 rows"),
+    postfx::level("reference", "Discs of every pixel, of any radius; slow"),
     postfx::level("classic", "Mean of a square; leaks, and near surfaces keep sharp edges"),
 };
-constexpr Gather gathers[] = {{3, 2, 2, 2, 8}, {6, 2, 2, 4, 8}, {6, 2, 1, 1, 8}, {12, 1, 2, 2, 16}};
+constexpr Gather gathers[] = {{4, 2, 2, never, never, 1, 8},
+                              {7, 2, 2, 4, 5, 4, 16},
+                              {7, 2, 2, never, never, 1, 16},
+                              {14, 1, 1, 0, 7, 4, 16},
+                              {40, 1, 1, never, never, 1, 48}};
 
 /// Pictures with fewer rows than twice this have layers of the full size.
 constexpr int rows_of_a_pixel = 360;
 
 /// Circles up to this diameter [px] count as sharp and stay untouched.
 constexpr double sharp_diameter = 1;
-/// Of a gathered disc, texels: the texel itself.
-constexpr double smallest_radius = 0.5;
-/// Edge of what is drawn or not as a whole, in tiles: these follow what reaches where, but are too small to draw singly.
+/// Difference of circles [px] over which sharp turns into blurred.
+constexpr double shortest_transition = 0.5;
+/// Edge of what is drawn or not as a whole, in tiles: these follow what reaches where, but are too small to draw
+/// singly.
 constexpr int tiles_of_a_mask = 4;
 /// Entries of the table of the discs' weights. Between them the sum is off by less than 2e-3.
 constexpr int disc_entries = 256;
-/// Of the layers. Every texel is read up to 137 times, and software rasterisers pay for each conversion from half
+/// Of the layers. Every texel is read over a hundred times, and software rasterisers pay for each conversion from half
 /// floats as much as for the fetch.
 constexpr const char* gathered = "rgba32f";
 
@@ -143,19 +157,29 @@ AxialShift axial_shift(const postfx::Request& in, double limit) {
 }
 
 /// Square of the radius [texels] of a disc that spreads as much as all but the gathered disc does (radius^2 = 4
-/// variances): the block's box 1/12, linear interpolation 1/6, joining a lattice's parts 1/2.
-double own_spread(int lattice) {
-    return 4 * (1.0 / 12 + 1.0 / 6 + (lattice == 1 ? 0 : 1.0 / 2));
+/// variances), beyond what pixels do anyway: those are squares of light, seen by squares.
+double own_spread(int lattice, int block) {
+    const double pixel = 1.0 / (block * block); // texels^2
+    const double averaging = (1 - pixel) / 12;
+    const double soft_edge = 1.0 / 12;
+    const double interpolation = block == 1 ? 0 : block % 2 == 0 ? 1.0 / 6 + pixel / 12 : (1 - pixel) / 6;
+    const double joining = lattice == 1 ? 0 : lattice == 2 ? 1.0 / 4 : 1.0 / 2;
+    return 4 * (averaging + soft_edge + interpolation + joining - pixel / 6);
 }
 
 /// 1 / (the smallest circle [px] that the layers can blur by - the largest sharp one).
 double share_slope(int lattice, int block) {
-    const double radius = block * std::sqrt(own_spread(lattice) + smallest_radius * smallest_radius);
-    return 1 / (2 * radius - sharp_diameter);
+    const double radius =
+        block * std::sqrt(std::max(own_spread(lattice, block) + smallest_radius * smallest_radius, 0.0));
+    return 1 / (std::max(2 * radius, shortest_transition + sharp_diameter) - sharp_diameter);
 }
 
 std::uint32_t divide_up(int size, int part) {
     return static_cast<std::uint32_t>((size + part - 1) / part);
+}
+
+int up_to_multiple(int size, int unit) {
+    return static_cast<int>(divide_up(size, unit)) * unit;
 }
 
 /// The picture split into background and foreground, each blurred at a reduced size.
@@ -165,9 +189,10 @@ void declare_gathers(const postfx::Request& in, postfx::Builder& out, const Lens
     const double largest = (lens.limit + shift.reach()) / 2; // pixels
     // Small pictures have finer layers, or their look would be another.
     const int finest = std::min(gather.finest_block, std::max(1, in.height() / rows_of_a_pixel));
-    const int block = std::max(finest, static_cast<int>(std::ceil(largest / gather.largest_radius)));
+    const int fitting = std::max(finest, static_cast<int>(std::ceil(largest / gather.largest_radius)));
+    const int block = fitting == 1 ? 1 : up_to_multiple(fitting, gather.block_step);
     const double texels = 0.5 / block; // of radius per pixel of diameter
-    const double far_slope = share_slope(gather.background_lattice, block);
+    const double far_slope = share_slope(gather.smallest_lattice(), block);
     const double near_slope = share_slope(gather.foreground_lattice, block);
     const std::uint32_t width = divide_up(in.width(), block), height = divide_up(in.height(), block);
     const std::uint32_t tiles_x = divide_up(in.width(), block * gather.tile);
@@ -176,7 +201,7 @@ void declare_gathers(const postfx::Request& in, postfx::Builder& out, const Lens
 
     const postfx::PlanImage depth = out.attachment("depth");
     const postfx::PlanImage discs = out.pass("discs", "depth_of_field_discs.glsl")
-                                        .value("largest_radius", gather.largest_radius)
+                                        .value("largest_radius", gather.widest())
                                         .constant("DEPTH_OF_FIELD_LATTICE", gather.foreground_lattice)
                                         .format("r32f")
                                         .sized(disc_entries, 1);
@@ -186,12 +211,16 @@ void declare_gathers(const postfx::Request& in, postfx::Builder& out, const Lens
             .reads("depth", depth, "nearest")
             .reads("discs", discs, "nearest")
             .value("lens", lens.scale, lens.offset, lens.sky, lens.limit)
-            .value("entries_per_texel", (disc_entries - 1) / (gather.largest_radius - smallest_radius))
+            .value("entries_per_texel", (disc_entries - 1) / (gather.widest() - smallest_radius))
             .constant("DEPTH_OF_FIELD_BLOCK", block)
             .constant("DEPTH_OF_FIELD_FAR_SLOPE", far_slope)
             .constant("DEPTH_OF_FIELD_NEAR_SLOPE", near_slope)
-            .constant("DEPTH_OF_FIELD_FAR_SPREAD", own_spread(gather.background_lattice))
-            .constant("DEPTH_OF_FIELD_NEAR_SPREAD", own_spread(gather.foreground_lattice))
+            .constant("DEPTH_OF_FIELD_FAR_SPREAD", own_spread(1, block))
+            .constant("DEPTH_OF_FIELD_THIN_SPREAD", own_spread(2, block))
+            .constant("DEPTH_OF_FIELD_THINNEST_SPREAD", own_spread(4, block))
+            .constant("DEPTH_OF_FIELD_THIN_FROM", gather.thin_from)
+            .constant("DEPTH_OF_FIELD_THINNEST_FROM", gather.thinnest_from)
+            .constant("DEPTH_OF_FIELD_NEAR_SPREAD", own_spread(gather.foreground_lattice, block))
             .formats({gathered, gathered, "r32f"})
             .sized(width, height);
     const postfx::PlanImage foreground = background.output(1);
@@ -204,7 +233,7 @@ void declare_gathers(const postfx::Request& in, postfx::Builder& out, const Lens
                                         .sized(tiles_x, tiles_y);
     const postfx::PlanImage reach = out.pass("reach", "depth_of_field_reach.glsl")
                                         .reads("tiles", tiles, "nearest")
-                                        .formats({"rg32f", "r8"})
+                                        .formats({"rgba32f", "r8"})
                                         .sized(tiles_x, tiles_y);
     const auto side = static_cast<std::uint32_t>(gather.tile * tiles_of_a_mask);
     const postfx::PlanImage blurred = out.pass("mask", "depth_of_field_mask.glsl")
@@ -215,18 +244,6 @@ void declare_gathers(const postfx::Request& in, postfx::Builder& out, const Lens
                                           .sized(divide_up(static_cast<int>(tiles_x), tiles_of_a_mask),
                                                  divide_up(static_cast<int>(tiles_y), tiles_of_a_mask));
     const postfx::PlanImage covered = blurred.output(1);
-    postfx::PlanImage blurred_background =
-        out.pass("background", "depth_of_field_background.glsl")
-            .reads("layer", background, "nearest")
-            .reads("reach", reach, "nearest")
-            .value("axial_shift", shift.red * texels, shift.green * texels, shift.blue * texels)
-            .value("axial_reach", shift.reach() * texels)
-            .constant("DEPTH_OF_FIELD_TILE", gather.tile)
-            .constant("DEPTH_OF_FIELD_LATTICE", gather.background_lattice)
-            .constant("DEPTH_OF_FIELD_AXIAL", axial)
-            .format(gathered)
-            .sized(width, height)
-            .where(blurred, side);
     postfx::PlanImage blurred_foreground =
         out.pass("foreground", "depth_of_field_foreground.glsl")
             .reads("layer", foreground, "nearest")
@@ -240,10 +257,29 @@ void declare_gathers(const postfx::Request& in, postfx::Builder& out, const Lens
             .format(gathered)
             .sized(width, height)
             .where(covered, side);
-    if (gather.background_lattice > 1) {
+    postfx::PlanImage blurred_background =
+        out.pass("background", "depth_of_field_background.glsl")
+            .reads("layer", background, "nearest")
+            .reads("before", foreground, "nearest")
+            .reads("thickness", thickness, "nearest")
+            .reads("covered", blurred_foreground, "nearest")
+            .reads("reach", reach, "nearest")
+            .value("axial_shift", shift.red * texels, shift.green * texels, shift.blue * texels)
+            .value("axial_reach", shift.reach() * texels)
+            .constant("DEPTH_OF_FIELD_TILE", gather.tile)
+            .constant("DEPTH_OF_FIELD_THIN_FROM", gather.thin_from)
+            .constant("DEPTH_OF_FIELD_THINNEST_FROM", gather.thinnest_from)
+            .constant("DEPTH_OF_FIELD_AXIAL", axial)
+            .format(gathered)
+            .sized(width, height)
+            .where(blurred, side);
+    if (gather.joins()) {
         blurred_background = out.pass("fill", "depth_of_field_fill.glsl")
                                  .reads("background", blurred_background, "nearest")
                                  .reads("foreground", blurred_foreground, "nearest")
+                                 .reads("reach", reach, "nearest")
+                                 .constant("DEPTH_OF_FIELD_TILE", gather.tile)
+                                 .constant("DEPTH_OF_FIELD_FOREGROUND_LATTICE", gather.foreground_lattice)
                                  .formats({gathered, gathered})
                                  .sized(width, height)
                                  .where(blurred, side);
@@ -261,20 +297,6 @@ void declare_gathers(const postfx::Request& in, postfx::Builder& out, const Lens
         .constant("DEPTH_OF_FIELD_NEAR_SLOPE", near_slope);
 }
 
-postfx::PlanImage declare_reference(const postfx::Request& in, postfx::Builder& out, const Lens& lens) {
-    const AxialShift shift = axial_shift(in, lens.limit);
-    const postfx::PlanImage circles = out.pass("circles", "depth_of_field_circles.glsl")
-                                          .reads("depth", out.attachment("depth"), "nearest")
-                                          .value("lens", lens.scale, lens.offset, lens.sky, lens.limit)
-                                          .format("r32f");
-    return out.pass("lens", "depth_of_field_lens.glsl")
-        .reads("source", out.color(), "nearest")
-        .reads("circles", circles, "nearest")
-        .value("axial_shift", shift.red, shift.green, shift.blue)
-        .value("limit", lens.limit)
-        .constant("DEPTH_OF_FIELD_AXIAL", shift.any() ? 1 : 0);
-}
-
 postfx::PlanImage declare_classic(postfx::Builder& out, const Lens& lens) {
     return out.pass("classic", "depth_of_field_classic.glsl")
         .reads("source", out.color(), "nearest")
@@ -287,9 +309,6 @@ void declare_passes(const postfx::Request& in, postfx::Builder& out, const Lens&
         out.compose("depth_of_field_view.glsl")
             .reads("depth", out.attachment("depth"), "nearest")
             .value("lens", lens.scale, lens.offset, lens.sky, lens.limit);
-    } else if (in.level() == reference) {
-        out.compose("depth_of_field_whole.glsl")
-            .reads("blurred", declare_reference(in, out, lens), "nearest");
     } else if (in.level() == classic) {
         out.compose("depth_of_field_whole.glsl").reads("blurred", declare_classic(out, lens), "nearest");
     } else {
@@ -297,8 +316,9 @@ void declare_passes(const postfx::Request& in, postfx::Builder& out, const Lens&
     }
 }
 
-/// Is it known that nothing is out of focus? The largest circle is that of the nearest surface, of the farthest, or of the sky: it only grows with the distance
-/// in 1/z from the focus. Asks the frame where the scene's bounds don't tell.
+/// Is it known that nothing is out of focus? The largest circle is that of the nearest surface, of the farthest, or
+/// of the sky: it only grows with the distance in 1/z from the focus. Asks the frame where the scene's bounds don't
+/// tell.
 bool is_skipped_as_sharp(const postfx::Request& in, postfx::Builder& out, const Lens& lens) {
     const postfx_camera& camera = in.camera();
     const double focus = focus_metres(in), aperture = aperture_metres(in) * in.height();

@@ -4,25 +4,23 @@ float depth_of_field_disc(float radius, float squared) {
     return clamp(0.5 * radius + 0.5 - squared * (0.5 / radius), 0.0, 1.0);
 }
 
-// The gathers visit a lattice around their own texel: every texel; every second one, as on a checkerboard; or every
-// fourth, nearly in hexagons: of every second row, by turns from an even and an odd column. What begins at -extent:
-const int DEPTH_OF_FIELD_ROW_STEP = DEPTH_OF_FIELD_LATTICE == 4 ? 2 : 1;
-const int DEPTH_OF_FIELD_COLUMN_STEP = DEPTH_OF_FIELD_LATTICE == 1 ? 1 : 2;
-
-int depth_of_field_first_row(int extent) {
-    return DEPTH_OF_FIELD_LATTICE == 4 ? (extent & 1) - extent : -extent;
+// The gathers visit a lattice around their own texel: every texel (1); every second one, as on a checkerboard (2); or
+// every fourth, nearly in hexagons (4): of every second row, by turns from an even and an odd column.
+int depth_of_field_row_step(int lattice) {
+    return lattice == 4 ? 2 : 1;
 }
 
-int depth_of_field_first_column(int extent, int row) {
-    if (DEPTH_OF_FIELD_LATTICE == 1) return -extent;
-    int shift = DEPTH_OF_FIELD_LATTICE == 2 ? row : row / 2;
+int depth_of_field_column_step(int lattice) {
+    return lattice == 1 ? 1 : 2;
+}
+
+// What begins at -extent:
+int depth_of_field_first_row(int lattice, int extent) {
+    return lattice == 4 ? (extent & 1) - extent : -extent;
+}
+
+int depth_of_field_first_column(int lattice, int extent, int row) {
+    if (lattice == 1) return -extent;
+    int shift = lattice == 2 ? row : row / 2;
     return ((extent + shift) & 1) - extent;
-}
-
-// The same for a radius per colour channel, which axial aberration shifts, as shares of the disc's light (up to a
-// common factor).
-vec3 depth_of_field_light_discs(float radius, vec3 shift, float squared) {
-    vec3 radii = max(radius + shift, 0.5);
-    vec3 slope = 0.5 / radii;
-    return clamp(0.5 * radii + 0.5 - squared * slope, 0.0, 1.0) * (slope * slope);
 }

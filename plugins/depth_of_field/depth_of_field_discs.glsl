@@ -7,9 +7,9 @@ vec4 depth_of_field_discs(Pixel pixel, DepthOfFieldDiscsParams params) {
     float outer = radius + 0.5;
     int rows = int(outer);
     float sum = 0.0;
-    for (int y = depth_of_field_first_row(rows); y <= rows; y += DEPTH_OF_FIELD_ROW_STEP) {
+    for (int y = depth_of_field_first_row(DEPTH_OF_FIELD_LATTICE, rows); y <= rows; y += depth_of_field_row_step(DEPTH_OF_FIELD_LATTICE)) {
         int columns = int(sqrt(outer * outer - float(y * y)));
-        for (int x = depth_of_field_first_column(columns, y); x <= columns; x += DEPTH_OF_FIELD_COLUMN_STEP) {
+        for (int x = depth_of_field_first_column(DEPTH_OF_FIELD_LATTICE, columns, y); x <= columns; x += depth_of_field_column_step(DEPTH_OF_FIELD_LATTICE)) {
             sum += depth_of_field_disc(radius, float(x * x + y * y));
         }
     }

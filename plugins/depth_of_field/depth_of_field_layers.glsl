@@ -9,6 +9,15 @@ float depth_of_field_radius(float circle, float own_spread) {
     return sqrt(max(radius * radius - own_spread, 0.25));
 }
 
+// The same behind the focus, where the lattice depends on the radius.
+float depth_of_field_far_radius(float circle) {
+    float radius = depth_of_field_radius(circle, DEPTH_OF_FIELD_FAR_SPREAD);
+    if (radius < DEPTH_OF_FIELD_THIN_FROM) return radius;
+    radius = max(depth_of_field_radius(circle, DEPTH_OF_FIELD_THIN_SPREAD), DEPTH_OF_FIELD_THIN_FROM);
+    if (radius < DEPTH_OF_FIELD_THINNEST_FROM) return radius;
+    return max(depth_of_field_radius(circle, DEPTH_OF_FIELD_THINNEST_SPREAD), DEPTH_OF_FIELD_THINNEST_FROM);
+}
+
 // Splits a block of pixels into what lies behind the focus plane and what lies before it, so that no later sum can
 // mix a sharp or near surface into the blur behind it.
 //   background  colour, blur radius [texels]: 0 in focus, -1 where the block shows nothing but blurred foreground
@@ -38,8 +47,7 @@ void depth_of_field_layers(Pixel pixel, DepthOfFieldLayersParams params, sampler
     background = vec4(0.0, 0.0, 0.0, -1.0);
     if (sharp_sum.a > 0.0) background = vec4(sharp_sum.rgb / sharp_sum.a, 0.0);
     if (far_sum.a > 0.0) {
-        background = vec4(far_sum.rgb / far_sum.a,
-                          depth_of_field_radius(far_circle / far_sum.a, DEPTH_OF_FIELD_FAR_SPREAD));
+        background = vec4(far_sum.rgb / far_sum.a, depth_of_field_far_radius(far_circle / far_sum.a));
     }
     foreground = vec4(0.0);
     thickness = vec4(0.0);
