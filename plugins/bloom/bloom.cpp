@@ -51,10 +51,15 @@ struct Line {
     double near, far;
     constexpr double variance() const { return 2 * near + 8 * far; }
 };
-constexpr Line eighth{1.0 / 16, 0}, quarter{1.0 / 8, 0}, half{1.0 / 4, 0}, whole{1.0 / 4, 1.0 / 16};
+constexpr Line quarter{1.0 / 8, 0}, half{1.0 / 4, 0}, whole{1.0 / 4, 1.0 / 16};
+/// Of the variance 1/n, and near to e^(-1 / n (1 - cos w)) up to the shortest waves. Dyadic as all weights, so that
+/// half floats of constant light stay what they are.
+constexpr Line gaussian_32{1.0 / 64, 0}, gaussian_16{15.0 / 512, 1.0 / 2048},
+    gaussian_8{7.0 / 128, 1.0 / 512}, gaussian_4{25.0 / 256, 7.0 / 1024}, gaussian_2{5.0 / 32, 3.0 / 128};
 constexpr Line high_lines[] = {half};
-constexpr Line ultra_first[] = {quarter, quarter}, ultra_lines[] = {whole};
-constexpr Line reference_first[] = {eighth, eighth, quarter, half};
+constexpr Line ultra_first[] = {quarter, whole}, ultra_lines[] = {whole};
+constexpr Line reference_first[] = {gaussian_32, gaussian_32, gaussian_16, gaussian_8, gaussian_8,
+                                    gaussian_4,  gaussian_2,  gaussian_2,  gaussian_2};
 constexpr Line reference_lines[] = {whole, whole, whole, whole};
 
 struct Rung {
@@ -154,6 +159,13 @@ double extent(int side, int size) {
     return side / std::pow(2, size);
 }
 
+/// What is made of the light that leaves its pixel, and the share that does not and is missing in it.
+struct Glow {
+    postfx::PlanImage image;
+    int block; ///< pixels per texel
+    double staying;
+};
+
 /// Declares the passes of one chain of blurs.
 class Passes {
 public:
@@ -180,46 +192,60 @@ public:
             .constant("BLOOM_HAS_FIREFLY_GUARD", has_guard());
     }
 
-    /// The sum of all blurs but the first if that halves: bringing that up is left to compose().
-    postfx::PlanImage glow(const Rung& rung, const std::vector<Blur>& blurs,
-                           const std::vector<double>& shares) {
+    /// The sum of all blurs but the first if that halves: bringing that up is left to compose(). The share that
+    /// stays in its pixel goes in if lines make the glow that is added: then it costs nothing.
+    Glow glow(const Rung& rung, const std::vector<Blur>& blurs, const std::vector<double>& shares) {
         halve(rung, blurs);
+        const bool holds_all = mode() != scatter && rung.block == 1;
         postfx::PlanImage wider = sizes_[static_cast<std::size_t>(blurs.back().coarser)];
         double wider_share = shares.back();
         for (std::size_t i = blurs.size(); i-- > 0;) {
             const bool is_first = i == 0;
             if (is_first && blurs[i].finer != blurs[i].coarser) break;
-            const double own_share = is_first ? 0 : shares[i];
+            const double own_share = is_first && !holds_all ? 0 : shares[i];
             wider_share += own_share;
             wider = widen(rung, blurs[i], i, wider, wider_share > 0 ? own_share / wider_share : 0);
         }
-        return wider;
+        return {wider, rung.block, holds_all ? 0 : shares[0]};
     }
 
-    postfx::PlanImage classic_glow() {
+    Glow classic_glow() {
         const double deviation = in_.number("radius") * in_.height();
-        return out_.pass("classic", "bloom_classic.glsl")
-            .reads("light", light(), "nearest")
-            .int_value("stride", std::max(1, static_cast<int>(std::lround(deviation / 5))));
+        return {out_.pass("classic", "bloom_classic.glsl")
+                    .reads("light", light(), "nearest")
+                    .int_value("stride", std::max(1, static_cast<int>(std::lround(deviation / 5)))),
+                1, 0};
     }
 
-    /// `scattered`: share of the glow that leaves its pixel; the rest is left as it is.
-    void compose(postfx::PlanImage glow, int block, double scattered) {
-        const double strength = in_.number("intensity") * scattered;
-        const double* tint = in_.color("tint");
-        out_.compose("bloom.glsl")
-            .reads("glow", glow)
-            .constant("BLOOM_BLOCK", block)
-            .constant("BLOOM_ADDS", mode() == scatter ? 0 : 1)
-            .value("uv_per_pixel", 1.0 / (block * divide_up(in_.width(), block)),
-                   1.0 / (block * divide_up(in_.height(), block)))
-            .value("kept", 1 - strength)
-            .value("gain", strength * tint[0], strength * tint[1], strength * tint[2]);
+    /// `intensity`: the value of that name, or 0 where there is no radius.
+    void compose(const Glow& glow, double intensity) {
+        const bool stays = mode() != scatter && glow.staying > 0;
+        const bool is_light_apart = stays && (mode() == emission || is_light_made(glow.block));
+        const double leaving = intensity * (1 - glow.staying), staying = intensity * glow.staying;
+        const double *tint = in_.color("tint"), kept = mode() == scatter ? 1 - intensity : 0;
+        auto pass = out_.compose(is_light_apart ? "bloom_over_light.glsl" : "bloom.glsl");
+        pass.reads("glow", glow.image)
+            .constant("BLOOM_BLOCK", glow.block)
+            .value("uv_per_pixel", 1.0 / (glow.block * divide_up(in_.width(), glow.block)),
+                   1.0 / (glow.block * divide_up(in_.height(), glow.block)))
+            .value("gain", leaving * tint[0], leaving * tint[1], leaving * tint[2])
+            .value("own", kept + staying * tint[0], kept + staying * tint[1], kept + staying * tint[2])
+            .constant("BLOOM_HAS_THRESHOLD", is_light_apart ? 0 : has_threshold());
+        if (is_light_apart) {
+            pass.reads("light", sizes_[0], "nearest");
+        } else {
+            pass.constant("BLOOM_ADDS", mode() == scatter ? 0 : 1)
+                .constant("BLOOM_STAYS", stays ? 1 : 0)
+                .value("knee_start", knee_start())
+                .value("knee_end", knee_end());
+        }
     }
 
 private:
     Mode mode() const { return static_cast<Mode>(in_.choice("mode")); }
     int has_threshold() const { return mode() == threshold ? 1 : 0; }
+    /// The light is read as it is if the first step down can take it from the picture.
+    bool is_light_made(int block) const { return block == 1 || has_guard() == 1; }
     int has_guard() const { return in_.number("firefly_guard") > 0 ? 1 : 0; }
     /// Nothing up to this brightness glows, also where filtering between pixels rounds up.
     double dark() const { return has_threshold() == 1 ? knee_start() * (1 - 1e-6) : 0; }
@@ -228,7 +254,7 @@ private:
 
     /// The light at every size that the blurs go by.
     void halve(const Rung& rung, const std::vector<Blur>& blurs) {
-        const bool is_made = rung.block == 1 || has_guard() == 1;
+        const bool is_made = is_light_made(rung.block);
         sizes_ = {is_made ? light() : source()};
         for (const Blur& blur : blurs) {
             if (blur.coarser == blur.finer) continue;
@@ -308,17 +334,17 @@ void plan(const postfx::Request& in, postfx::Builder& out) {
     Passes passes(in, out);
     if (in.level() == classic) {
         passes.ask_frame();
-        return passes.compose(passes.classic_glow(), 1, 1);
+        return passes.compose(passes.classic_glow(), in.number("radius") > 0 ? in.number("intensity") : 0);
     }
 
     const Rung& rung = rungs[in.level()];
     const double widest = widest_over_mean * std::pow(in.number("radius") * in.height(), 2);
     const std::vector<Blur> blurs = blurs_for(rung, widest, std::max(in.width(), in.height()));
     const std::vector<double> shares = shares_of(blurs, widest);
-    const double scattered = 1 - shares[0];
-    if (scattered == 0 && out.identity("the radius is too far below a pixel to count")) return;
+    const bool stays = shares[0] == 1;
+    if (stays && out.identity("the radius is too far below a pixel to count")) return;
     passes.ask_frame();
-    passes.compose(passes.glow(rung, blurs, shares), rung.block, scattered);
+    passes.compose(passes.glow(rung, blurs, shares), stays ? 0 : in.number("intensity"));
 }
 
 /// Scattering averages. A threshold is steep, and a guard compares with neighbours: no bound is known for these.

@@ -1,10 +1,12 @@
-// The picture's own light and the glow, of which each texel stands for BLOOM_BLOCK x BLOOM_BLOCK pixels. What is
-// added may not lift a half float over its largest value; a weighted mean can't.
+#include "bloom_glow.glsl"
+#include "bloom_source.glsl"
+
+// The picture's own light and the glow. Where glow is added and the image of it lacks what stays in its pixel
+// (BLOOM_STAYS), that is taken from the picture.
 vec3 bloom(vec3 color, Pixel pixel, BloomParams params, sampler2D glow) {
-    vec3 scattered = BLOOM_BLOCK == 1
-                         ? texelFetch(glow, pixel.index, 0).rgb
-                         : textureLod(glow, pixel.position * params.uv_per_pixel, 0.0).rgb;
-    scattered *= params.gain;
-    if (BLOOM_ADDS == 0) return params.kept * color + scattered;
-    return color + min(scattered, max(vec3(0.0), 65504.0 - color));
+    vec3 leaving = params.gain * bloom_glow(pixel, params.uv_per_pixel, glow);
+    if (BLOOM_ADDS == 0) return params.own * color + leaving;
+    if (BLOOM_STAYS == 0) return bloom_added(color, leaving);
+    vec3 staying = bloom_glowing(bloom_repaired(color), params.knee_start, params.knee_end);
+    return bloom_added(color, leaving + params.own * staying);
 }

@@ -295,9 +295,10 @@ Line times(Line line, double factor) {
     return line;
 }
 
-/// Half of every pixel goes on in the same place, the rest to both sides.
-Line lazy(double stays) {
-    return {(1 - stays) / 2, stays, (1 - stays) / 2};
+/// Five weights of that variance, the outermost of which is given.
+Line five(double variance, double outer) {
+    const double inner = variance / 2 - 4 * outer;
+    return {outer, inner, 1 - 2 * (inner + outer), inner, outer};
 }
 
 /// (1+z)^3 (1+z^2) / 16
@@ -310,9 +311,13 @@ struct Pyramid {
 
 Pyramid pyramid_of(int level) {
     if (level == high) return {{binomial(2)}, {binomial(2)}};
-    if (level == ultra) return {{lazy(0.75), lazy(0.75)}, {binomial(4)}};
+    if (level == ultra) return {{five(0.25, 0), binomial(4)}, {binomial(4)}};
     if (level == best) {
-        return {{lazy(0.875), lazy(0.875), lazy(0.75), lazy(0.5)}, std::vector<Line>(4, binomial(4)), false};
+        const Line eighth = five(0.125, 0.001953125), half = five(0.5, 0.0234375);
+        return {{five(0.03125, 0), five(0.03125, 0), five(0.0625, 0.00048828125), eighth, eighth,
+                 five(0.25, 0.0068359375), half, half, half},
+                std::vector<Line>(4, binomial(4)),
+                false};
     }
     return {};
 }
@@ -405,14 +410,16 @@ Image64 enlarged(const ReferenceInput& input, const Image64& image, const Image6
     });
 }
 
-/// The sum of the blurs that leave their pixel, and their share of the light.
-Image64 glow_of(const ReferenceInput& input, int level, double& scattered) {
+/// The sum of all blurs. When light scatters, what stays in its pixel is the picture's own light.
+Image64 glow_of(const ReferenceInput& input, int level) {
     const Source source(input);
     const double widest = 5 * std::pow(input.value("radius") * input.color.height, 2);
     const std::vector<Blur> blurs = blurs_of(level, widest, std::max(input.color.width, input.color.height));
     const std::vector<double> shares = shares_of(blurs, widest);
-    scattered = 1 - shares[0];
     std::vector<Image64> sizes = {source.light()};
+    Image64 sum = input.value("mode") == scatter ? input.color : sizes[0];
+    for (double& value : sum.values)
+        value *= shares[0];
     for (const Blur& blur : blurs) {
         if (blur.coarser == blur.size) continue;
         const Image64 finer = sizes.back();
@@ -420,7 +427,6 @@ Image64 glow_of(const ReferenceInput& input, int level, double& scattered) {
         sizes.resize(static_cast<std::size_t>(blur.coarser) + 1, finer);
         sizes.back() = coarser;
     }
-    Image64 sum(input.color.width, input.color.height, 3);
     Image64 blurred = sizes[0];
     for (std::size_t node = 1; node <= blurs.size(); ++node) {
         const bool at_one_size = sizes.size() == 1; // blurs of one size may be done in any order
@@ -463,9 +469,8 @@ Image64 classic_glow_of(const ReferenceInput& input) {
 
 Image64 postfx::testing::reference(const ReferenceInput& input) {
     const int level = static_cast<int>(input.value("quality"));
-    double scattered = 1;
-    const Image64 glow = level == classic ? classic_glow_of(input) : glow_of(input, level, scattered);
-    const double intensity = input.value("intensity");
+    const Image64 glow = level == classic ? classic_glow_of(input) : glow_of(input, level);
+    const double intensity = input.value("radius") > 0 ? input.value("intensity") : 0; // neither: no glow
     Image64 result(glow.width, glow.height, 3);
     for (int y = 0; y < glow.height; ++y) {
         for (int x = 0; x < glow.width; ++x) {
@@ -477,7 +482,7 @@ Image64 postfx::testing::reference(const ReferenceInput& input) {
                     result.at(x, y, c) = own + std::min(added, std::max(0.0, 65504 - own));
                     continue;
                 }
-                result.at(x, y, c) = (1 - intensity * scattered) * own + added;
+                result.at(x, y, c) = (1 - intensity) * own + added;
             }
         }
     }

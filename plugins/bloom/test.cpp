@@ -112,8 +112,8 @@ TEST_CASE("the picture is the float64 reference's, at every level") {
 
 TEST_CASE("the finer the level, the nearer to the exact convolution") {
     // Sums of |error| over a point of light, in % of its light: the largest seen, rounded up.
-    const std::pair<double, std::vector<double>> cases[] = {{4, {0.44, 0.165, 0.066, 0.038, 0.027}},
-                                                            {12, {0.30, 0.12, 0.05, 0.03, 0.02}}};
+    const std::pair<double, std::vector<double>> cases[] = {{4, {0.44, 0.165, 0.066, 0.034, 0.0095}},
+                                                            {12, {0.30, 0.12, 0.05, 0.024, 0.0085}}};
     for (const auto& [deviation, bounds] : cases) {
         double before = 1;
         for (Level level : pyramids) {
@@ -231,6 +231,34 @@ TEST_CASE("a point of light keeps its energy and its place, wherever it is") {
     }
 }
 
+TEST_CASE("the glow that is added holds all the light it is of, also what stays in its pixel") {
+    const int size = 192, x = 99, y = 90;
+    for (Level level : pyramids) {
+        for (Mode mode : {threshold, emission}) {
+            for (double guard : {0.0, 1e-6}) {
+                Input input{.color = constant(size, size, {0, 0, 0})};
+                (mode == emission ? input.attachments["emission"] : input.color) =
+                    impulse(size, size, x, y, 1000);
+                // A threshold of 0 passes all: `low` sees means of pixels, of which a larger one takes more. The
+                // guard has nothing to hold back but makes the light by a pass; a firefly would lose all.
+                Values values{
+                    {"intensity", 0.5}, {"radius", 0.02}, {"threshold", 0}, {"firefly_guard", guard}};
+                if (guard > 0) {
+                    for (int i = 0; i < 9; ++i)
+                        (mode == emission ? input.attachments["emission"] : input.color)
+                            .at(x + i % 3 - 1, y + i / 3 - 1, 0) = 1000;
+                }
+                const double light = guard > 0 ? 9000 : 1000;
+                const double before = mode == emission ? 0 : light;
+                const Image result = run_effect("bloom", input, with(level, with(mode, values)));
+                INFO("level " << level << ", mode " << mode << ", guard " << guard);
+                // Roundings and places of 36864 values that are added.
+                CHECK(std::abs((moments(result).sum - before) / (0.5 * light) - 1) <= 2e-5);
+            }
+        }
+    }
+}
+
 TEST_CASE("no light is lost or made at the border") {
     const auto energy = [](Level level, int width, int height, int x, int y) {
         const Input input{.color = impulse(width, height, x, y, 1000)};
@@ -292,7 +320,7 @@ TEST_CASE("the picture changes continuously with the radius") {
 TEST_CASE("twice the resolution, the same look") {
     // Light of 2x2 pixels, seen at half the size again. In shares of its light, at a standard deviation of 4 pixels:
     // the finest blur is so many pixels wide, whatever their size, and so is a pixel, so the halo's middle differs.
-    const double bounds[] = {0.4, 0.15, 0.075, 0.075, 0.06};
+    const double bounds[] = {0.4, 0.15, 0.075, 0.075, 0.065};
     Image twice(128, 128, 3);
     for (int i = 0; i < 4; ++i)
         twice.at(60 + i % 2, 58 + i / 2, 0) = 1;
@@ -422,7 +450,7 @@ TEST_CASE("emission alone glows; the picture's own light does not") {
         for (float value : three_channels(result).values)
             sum += value - 9;
         CHECK(sum == Approx(expected_sum).epsilon(1e-3)); // rounding of values near 9 to float, 4096 of them
-        CHECK(sum / 3 <= 250);
+        CHECK(sum / 3 == Approx(250).epsilon(1e-3));      // as above
     }
 }
 
