@@ -20,9 +20,10 @@ constexpr postfx_level levels[] = {
     postfx::level("low",
                   "three images of different size: ghosts instead of fringes where they lie far apart"),
     postfx::level("medium", "samples of the spectrum at most 1.5 pixels apart, up to 2 x 12"),
-    postfx::level("high", "samples at most 0.75 pixels apart, up to 2 x 48"),
-    postfx::level("ultra", "as high, each sample by 4x4 pixels (Catmull-Rom) without ringing"),
-    postfx::level("reference", "at most 0.25 pixels apart, up to 2 x 256, each by 6x6 pixels; slow"),
+    postfx::level("high", "as medium, each sample by 4x4 pixels (Catmull-Rom) without ringing"),
+    postfx::level("ultra",
+                  "samples at most 0.75 pixels apart, up to 2 x 48, each by 6x6 pixels without ringing"),
+    postfx::level("reference", "as ultra, samples at most 0.25 pixels apart, up to 2 x 256; slow"),
 };
 
 /// How an integral over wavelengths is sampled, by level from medium on.
@@ -31,7 +32,7 @@ struct Sampling {
     int most;       ///< samples on either side of green; beyond, the spacing grows
     int radius; ///< of the kernel that rebuilds the picture between pixels; 1: the sampler's linear filter
 };
-constexpr Sampling samplings[] = {{1.5, 12, 1}, {0.75, 48, 1}, {0.75, 48, 2}, {0.25, 256, 3}};
+constexpr Sampling samplings[] = {{1.5, 12, 1}, {1.5, 12, 2}, {0.75, 48, 3}, {0.25, 256, 3}};
 
 // Wavelengths in micrometres at which the three channels are most sensitive.
 constexpr double red_peak = 0.612, green_peak = 0.549, blue_peak = 0.464;
@@ -107,9 +108,9 @@ void plan(const postfx::Request& in, postfx::Builder& out) {
     }
 }
 
-/// Filtered samples average; cubic kernels overshoot.
+/// Filtered samples average; cubic kernels weigh differences by more than 1.
 postfx::Gain gain(const postfx::Request& in) {
-    return in.level() <= high ? postfx::Gain{} : postfx::Gain::unknown();
+    return in.level() <= medium ? postfx::Gain{} : postfx::Gain::unknown();
 }
 
 constexpr auto chromatic_aberration = postfx::effect<plan>("chromatic_aberration")

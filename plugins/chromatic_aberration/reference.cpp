@@ -35,12 +35,11 @@ double between(const std::array<double, 6>& v, double t) {
            - slope(3) * t * t * s;
 }
 
-/// Four are kept from ringing: between the middle two. Six end only where light does.
-double limited(double value, const std::array<double, 4>& v) {
-    return std::clamp(value, std::min(v[1], v[2]), std::max(v[1], v[2]));
-}
-double limited(double value, const std::array<double, 6>&) {
-    return counted(value);
+/// Kept from ringing: within the range of the middle four.
+template<std::size_t n>
+double held(double value, const std::array<double, n>& v) {
+    const auto [least, most] = std::minmax_element(v.begin() + (n / 2 - 2), v.begin() + (n / 2 + 2));
+    return std::clamp(value, *least, *most);
 }
 
 /// Edges clamped; x and y in pixels from the corner of the picture. Every pixel is counted().
@@ -55,9 +54,9 @@ double cubic_sample(const Image64& image, double x, double y, int channel) {
         for (std::size_t i = 0; i < n; ++i) {
             line[i] = counted(texel(image, left + first + double(i), below + first + double(j), channel));
         }
-        lines[j] = limited(between(line, x - 0.5 - left), line);
+        lines[j] = held(between(line, x - 0.5 - left), line);
     }
-    return limited(between(lines, y - 0.5 - below), lines);
+    return held(between(lines, y - 0.5 - below), lines);
 }
 
 /// A sample of a filtered texture is counted() as a whole.
@@ -72,8 +71,8 @@ double linear_sample(const Image64& image, double x, double y, int channel) {
 }
 
 double sample(const Image64& image, double x, double y, int channel, int level) {
-    if (level == ultra) return cubic_sample<4>(image, x, y, channel);
-    if (level == most) return cubic_sample<6>(image, x, y, channel);
+    if (level == high) return cubic_sample<4>(image, x, y, channel);
+    if (level > high) return cubic_sample<6>(image, x, y, channel);
     return linear_sample(image, x, y, channel);
 }
 
@@ -108,7 +107,7 @@ struct Place {
 /// to `share` of the offset from the centre.
 double half_spectrum(const Place& place, int channel, double share, double pixels, double constant,
                      double slope) {
-    const double spacings[] = {1.5, 0.75, 0.75, 0.25}, limits[] = {12, 48, 48, 256};
+    const double spacings[] = {1.5, 1.5, 0.75, 0.25}, limits[] = {12, 12, 48, 256};
     const int i = place.level - medium;
     const int n = static_cast<int>(std::clamp(std::ceil(std::abs(pixels) / spacings[i]), 1.0, limits[i]));
     double sum = 0;

@@ -2,7 +2,9 @@
 #include <postfx/plugin.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
+#include <numbers>
 
 namespace {
 
@@ -30,19 +32,41 @@ constexpr postfx_level levels[] = {
                   "sine noise by how far a pixel is out of focus, the same in all light; wears out in time"),
     postfx::level("low", "one number per pixel: right in strength, but grains are pixels"),
     postfx::level("medium", "grains of the right size from 3 numbers per channel"),
-    postfx::level("high", "Gaussian grain: 10 to 14 numbers per channel"),
+    postfx::level("high", "discs on a lattice through the pixel's square: up to 14 numbers per channel"),
     postfx::level("reference", "32 layers of discs at random places (Boolean model); slow"),
 };
 
-/// Lattice points per `size`, and what the points mean: medium's triangular lattice has edges of sqrt(2/3) in its own
-/// unit, high's kernel ends at 2 of its edges, reference's discs have diameter 1. The factors give all three the
-/// same correlation at half its height.
-struct Field {
-    const char* source;
-    double frequency;
+constexpr double pi = std::numbers::pi;
+/// Diameter of film's discs per `size`: correlation at half its height at 0.58 of the size, in mid-tones.
+constexpr double disc_per_size = 1.75;
+/// Diameter of the disc whose spectrum medium's field is nearest to, in the lattice's unit (edges are sqrt(2/3) of it).
+constexpr double medium_edges = 0.81649658 * disc_per_size / 1.22;
+
+/// Discs of film as a pixel's square shows them. A disc of radius R has the variance R^2 / 4 along an axis, the square
+/// 1 / 12; blurred by the square the disc has their sum, and the disc's area.
+struct SeenDisc {
+    /// As a smooth field's size: the diameter of the sharp disc that has that variance, pixels.
+    double diameter;
+    /// As a disc with an edge one pixel wide, clamp(reach - distance, 0, 1): pixels, and its integrals. From a reach of
+    /// 1 on its area is pi ((reach - 1/2)^2 + 1/12), which is to be the disc's. Below it is a cone, between that and the one that
+    /// has the variance of the square alone, 0.15 reach^2.
+    double reach, area, area_of_square;
+    double radius; ///< of the disc itself, pixels
+
+    explicit SeenDisc(double size) {
+        radius = 0.5 * disc_per_size * size;
+        const double variance = radius * radius / 4 + 1.0 / 12;
+        diameter = 4 * std::sqrt(variance);
+        reach = radius * radius > 1.0 / 3 ? 0.5 + std::sqrt(radius * radius - 1.0 / 12)
+                                          : std::sqrt(5.0 / 9 + 4 * radius * radius / 3);
+        const double inner = reach - 1;
+        area = inner < 0 ? pi * std::pow(reach, 3) / 3 : pi * (inner * inner + reach - 2.0 / 3);
+        area_of_square = inner < 0 ? pi * std::pow(reach, 4) / 6 : pi * (inner * inner + 2 * reach / 3 - 0.5);
+    }
 };
-constexpr Field fields[] = {
-    {"grain.glsl", 0.81649658}, {"grain_gaussian.glsl", 1 / 0.45}, {"grain_boolean.glsl", 1 / 1.75}};
+/// Of the levels from low on.
+constexpr const char* sources[] = {"grain_pixels.glsl", "grain.glsl", "grain_gaussian.glsl",
+                                   "grain_boolean.glsl"};
 constexpr int layers_of_discs = 32;
 
 /// A word for the hash, as int_value() can pass it on.
@@ -70,22 +94,18 @@ void plan(const postfx::Request& in, postfx::Builder& out) {
     // is to be 1; two channels then correlate by 1 - own^2, which is to be 1 - color.
     const double own = std::sqrt(in.number("color"));
     const double joint = (std::sqrt(3 - 2 * own * own) - own) / 3;
-    const int key = key_of(in.integer("seed"));
-    if (in.level() == low || size <= 1) {
-        out.compose("grain_pixels.glsl")
-            .value("own", sigma * own)
-            .value("joint", sigma * joint)
-            .int_value("key", key)
-            .constant("GRAIN_NUMBERS", in.level() >= high ? 4 : 1);
-        return;
+    const SeenDisc disc(size);
+    postfx::PassDeclaration pass = out.compose(sources[in.level() - low]);
+    pass.value("own", sigma * own).value("joint", sigma * joint).int_value("key", key_of(in.integer("seed")));
+    if (in.level() == medium) pass.value("frequency", medium_edges / disc.diameter);
+    if (in.level() == high)
+        pass.value("frequency", 2 / disc.reach).value("radius_squared", disc.radius * disc.radius);
+    if (in.level() == reference) {
+        pass.value("frequency", 0.5 / disc.reach)
+            .value("discs", 4 * disc.reach * disc.reach / disc.area)
+            .value("square_share", disc.area_of_square / disc.area)
+            .constant("GRAIN_LAYERS", layers_of_discs);
     }
-    const Field& field = fields[in.level() - medium];
-    out.compose(field.source)
-        .value("own", sigma * own)
-        .value("joint", sigma * joint)
-        .int_value("key", key)
-        .value("frequency", field.frequency / size)
-        .constant("GRAIN_LAYERS", layers_of_discs);
 }
 
 /// u + n sqrt(u (1 - u)), its second part cut at the nearer end: at most twice as steep as u up to 1, as steep

@@ -65,14 +65,23 @@ private:
     double squares_ = 0;
 };
 
-/// The first of `count` words is the pixel's.
-Triple pixel_field(int x, int y, std::uint32_t key, int count) {
-    Sum sum;
-    std::uint32_t word = word_at(x, y, key);
-    for (int i = 0; i < count; ++i, word = mixed(word + 2654435769u))
-        sum.add(numbers(word), 1);
-    return sum.normalised();
-}
+/// A disc of that radius [px] through a pixel's square, as a disc with a slope instead of an edge.
+struct SlopedDisc {
+    double reach;
+    double area = 0, area_of_square = 0; ///< integrals of its height and of its square
+
+    explicit SlopedDisc(double radius) {
+        const double x = 3 * radius * radius; // 1: where the slope meets in the middle
+        reach = x > 1 ? 0.5 + std::sqrt((x - 0.25) / 3) : std::sqrt(5 / 9.0 + x * 4 / 9);
+        constexpr int rings = 20000;
+        for (int i = 0; i < rings; ++i) {
+            const double r = reach * (i + 0.5) / rings, ring = 2 * pi * r * reach / rings;
+            area += ring * height(r);
+            area_of_square += ring * std::pow(height(r), 2);
+        }
+    }
+    double height(double distance) const { return std::clamp(reach - distance, 0.0, 1.0); }
+};
 
 /// Corner (i, j) of the triangular lattice with edges of length `edge` stands at i * a + j * b, where a and b
 /// are the edges that lie symmetrically about the diagonal.
@@ -94,67 +103,82 @@ Triple triangular_field(double x, double y, double edge, std::uint32_t key) {
     return sum.normalised();
 }
 
-/// Points of a square lattice, those within 2 edges.
-Triple square_field(double x, double y, double edge, std::uint32_t key) {
+/// Points of a square lattice with `edge` [px], those within a channel's reach.
+Triple square_field(double x, double y, double edge, double radius, const Triple& light, std::uint32_t key) {
     const auto i0 = static_cast<int>(std::floor(x / edge)), j0 = static_cast<int>(std::floor(y / edge));
-    Sum sum;
-    for (int j = j0 - 2; j <= j0 + 3; ++j) {
-        for (int i = i0 - 2; i <= i0 + 3; ++i) {
-            const double inside = 1 - std::pow(std::hypot(x / edge - i, y / edge - j) / 2, 2);
-            if (inside > 0) sum.add(numbers(word_at(i + 1, j + 1, key)), inside * inside);
+    Triple result;
+    for (std::size_t c = 0; c < 3; ++c) {
+        const double bare = std::clamp(1 - light[c], 0.001, 1.0);
+        const double x3 = 3 * radius * radius * std::pow(bare, 0.3);
+        const double reach = x3 > 1 ? 0.5 + std::sqrt((x3 - 0.25) / 3) : std::sqrt(5 / 9.0 + x3 * 4 / 9);
+        Sum sum;
+        for (int j = j0 - 2; j <= j0 + 3; ++j) {
+            for (int i = i0 - 2; i <= i0 + 3; ++i) {
+                const double weight = std::clamp(reach - std::hypot(x - i * edge, y - j * edge), 0.0, 1.0);
+                if (weight > 0) sum.add(numbers(word_at(i + 1, j + 1, key)), weight);
+            }
         }
+        result[c] = sum.normalised()[c];
     }
-    return sum.normalised();
+    return result;
 }
 
 /// How many of a Poisson process's points a uniform number stands for.
 int poisson(double number, double mean) {
     int count = 0;
-    for (double share = std::exp(-mean); number >= share && count < 40; share *= mean / ++count)
+    for (double share = std::exp(-mean); number >= share && count < 96; share *= mean / ++count)
         number -= share;
     return count;
 }
 
-/// Is a place covered by discs of diameter 1 at random? Places and cells of area 1.
-bool is_covered(double x, double y, double mean, std::uint32_t key) {
+/// What discs at random leave bare of a pixel. Places in cells, `cell` pixels wide.
+double bare_share(double x, double y, double cell, const SlopedDisc& disc, double mean, std::uint32_t key) {
+    double bare = 1;
     for (int j = static_cast<int>(std::floor(y)) - 1; j <= std::floor(y) + 1; ++j) {
         for (int i = static_cast<int>(std::floor(x)) - 1; i <= std::floor(x) + 1; ++i) {
             std::uint32_t word = word_at(i + 1, j + 1, key);
             const int count = poisson((word >> 8) / 16777216.0, mean);
-            for (int disc = 0; disc < count; ++disc) {
+            for (int k = 0; k < count; ++k) {
                 word = mixed(word + 2654435769u);
                 const double dx = i + (word % 65536 + 0.5) / 65536 - x;
                 const double dy = j + ((word >> 16) + 0.5) / 65536 - y;
-                if (std::hypot(dx, dy) < 0.5) return true;
+                bare *= 1 - disc.height(cell * std::hypot(dx, dy));
             }
         }
     }
-    return false;
+    return bare;
 }
 
-double boolean_field(double x, double y, double light, std::uint32_t key) {
-    const double covered = std::clamp(light, 0.001, 0.999);
-    const double mean = -std::log1p(-covered) / (pi / 4);
+double boolean_field(double x, double y, const SlopedDisc& disc, double light, std::uint32_t key) {
+    const double covered = std::clamp(light, 0.001, 0.999), cell = 2 * disc.reach;
+    const double density = -std::log1p(-covered) / disc.area; // per square pixel
     const int layers = 32;
-    int count = 0;
+    double sum = 0;
     for (int layer = 0; layer < layers; ++layer) {
         key = mixed(key + 2654435769u);
-        count += is_covered(x, y, mean, key);
+        sum += 1 - bare_share(x / cell, y / cell, cell, disc, density * cell * cell, key);
     }
-    return (count - layers * covered) / std::sqrt(layers * covered * (1 - covered));
+    const double variance = std::pow(1 - covered, 2) * std::expm1(density * disc.area_of_square);
+    return (sum - layers * covered) / std::sqrt(layers * variance);
 }
 
 Triple field_at(const ReferenceInput& input, int level, int x, int y) {
     const double size = input.value("size") * input.color.height, px = x + 0.5, py = y + 0.5;
+    const double radius = 0.875 * size;
     const std::uint32_t key = key_of(input);
-    if (level == low || size <= 1) return pixel_field(x, y, key, level >= high ? 4 : 1);
-    if (level == medium) return triangular_field(px, py, size, key);
-    if (level == high) return square_field(px, py, 0.45 * size, key);
-    Triple result;
-    for (std::uint32_t c = 0; c < 3; ++c) {
-        result[c] = boolean_field(px / (1.75 * size), py / (1.75 * size),
-                                  input.color.at(x, y, static_cast<int>(c)), mixed(key + c + 1));
-    }
+    if (level == low) return numbers(word_at(x, y, key));
+    // The square's 1 / 12 is that of a disc of diameter 2 / sqrt(3).
+    if (level == medium)
+        return triangular_field(px, py, 1.22 / 1.75 * std::hypot(2 * radius, 2 / std::sqrt(3.0)), key);
+    Triple light, result;
+    for (std::size_t c = 0; c < 3; ++c)
+        light[c] = input.color.at(x, y, static_cast<int>(c));
+    static double known = -1;
+    static SlopedDisc disc(1);
+    if (known != radius) disc = SlopedDisc(known = radius);
+    if (level == high) return square_field(px, py, disc.reach / 2, radius, light, key);
+    for (std::uint32_t c = 0; c < 3; ++c)
+        result[c] = boolean_field(px, py, disc, light[c], mixed(key + c + 1));
     return result;
 }
 
