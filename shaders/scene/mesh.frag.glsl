@@ -2,7 +2,8 @@
 
 void main() {
     Surface surface = scene_surface();
-    if (!gl_FrontFacing) surface.normal = -surface.normal;
+    // Seen from behind. A blade of grass whose normals point up still has them towards a viewer above.
+    if (!gl_FrontFacing && dot(surface.normal, scene_to_eye()) < 0.0) surface.normal = -surface.normal;
     Radiance radiance = scene_shade(surface);
     scene_write(surface, radiance, u_material.has_maps.z ? surface.opacity : 1.0);
 }

@@ -5,8 +5,13 @@ struct Radiance {
     vec3 ambient; // the share that occlusion may darken
 };
 
+// From the surface to the viewer, unit.
+vec3 scene_to_eye() {
+    return mix(u_view.backward.xyz, normalize(u_view.eye.xyz - v_position), u_view.eye.w);
+}
+
 Radiance scene_shade(Surface surface) {
-    vec3 to_eye = mix(u_view.backward.xyz, normalize(u_view.eye.xyz - v_position), u_view.eye.w);
+    vec3 to_eye = scene_to_eye();
     vec3 direct = scene_direct(surface, to_eye);
     vec3 around = mix(u_view.ambient_down.rgb, u_view.ambient_up.rgb, surface.normal.y * 0.5 + 0.5);
     // The background in the mirror direction; a dull surface sees little of it.
