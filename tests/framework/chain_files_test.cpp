@@ -54,6 +54,25 @@ TEST_CASE("an include that is not beside the file is looked for in the include d
     CHECK(folder.error("mine/a.yaml").find("can't include \"base.yaml\"") != std::string::npos);
 }
 
+TEST_CASE("an included chain's budget and pins hold until they are replaced") {
+    using postfx::Budget;
+    const ChainFolder folder;
+    folder.write("base.yaml", "budget: {ms: 6}\neffects: [blur: {pin: low}]");
+    folder.write("same.yaml", "include: base.yaml");
+    folder.write("other.yaml", "include: base.yaml\nbudget: {error: 0.1}\noverrides: {blur: {quality: low}}");
+    folder.write("pinned.yaml", "include: other.yaml\noverrides: {blur: {pin: high}}");
+    CHECK(folder.read("same.yaml").budget == Budget{Budget::Of::ms, 6});
+    CHECK(folder.read("same.yaml").entries[0].pinned);
+    CHECK(folder.read("other.yaml").budget == Budget{Budget::Of::error, 0.1});
+    CHECK_FALSE(folder.read("other.yaml").entries[0].pinned);
+    CHECK(folder.read("pinned.yaml").entries[0].pinned);
+    CHECK(folder.read("pinned.yaml").entries[0].level == 1);
+    folder.write("both.yaml", "include: base.yaml\noverrides: {blur: {quality: low, pin: low}}");
+    CHECK(
+        folder.error("both.yaml")
+        == "both.yaml:2:34: blur has quality and pin; give quality, or pin to keep the level under a budget");
+}
+
 TEST_CASE("an included chain comes first, changed by overrides") {
     const ChainFolder folder;
     folder.write("base/default.yaml", "effects: [shade, blur: {taps: 3}]");

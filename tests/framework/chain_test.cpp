@@ -90,7 +90,7 @@ TEST_CASE("every mistake has its message") {
          R"(c.yaml:1:1: a chain: expected "effects:" and a list, or "include:" and a file, found "blur")"},
         {"efects: []", R"(c.yaml:1:1: a chain has no key "efects"; did you mean "effects"?)"},
         {"effects: []\nplugins: []",
-         R"(c.yaml:2:1: a chain has no key "plugins"; expected one of effects, include, overrides, skip)"},
+         R"(c.yaml:2:1: a chain has no key "plugins"; expected one of budget, effects, include, overrides, skip)"},
         {"effects: blur", R"(c.yaml:1:10: "effects": expected a list of effects, found "blur")"},
         {"effects:\n  blur:\n", R"(c.yaml:2:3: "effects": expected a list of effects, found a map)"},
         {"effects: []\neffects: []", R"(c.yaml:2:1: "effects" is given twice)"},
@@ -126,7 +126,7 @@ TEST_CASE("every mistake has its message") {
         {"effects: [shade: {enable: true}]",
          R"(c.yaml:1:19: shade has no parameter "enable"; did you mean "enabled"?)"},
         {"effects: [shade: {zzzzzzzz: 1}]",
-         R"(c.yaml:1:19: shade has no parameter "zzzzzzzz"; expected one of radius, enabled, quality, name)"},
+         R"(c.yaml:1:19: shade has no parameter "zzzzzzzz"; expected one of radius, enabled, quality, pin, name)"},
         {"effects: [blur: {taps: 3, taps: 4}]", R"(c.yaml:1:27: "taps" is given twice)"},
         {"effects: [shade: {[radius]: 1}]", R"(c.yaml:1:19: expected a word as key, found a list)"},
         {"effects: [shade: {~: 1}]", R"(c.yaml:1:19: expected a word as key, found nothing)"},
@@ -204,7 +204,7 @@ TEST_CASE("every mistake has its message") {
         // a column counts characters: two before the place are of two bytes
         {"effects: [blur: {\"\xC3\xA4\xC3\xB6\": 1, x: 1}]",
          "c.yaml:1:18: blur has no parameter \"\xC3\xA4\xC3\xB6\"; expected one of intensity, taps, wrap, "
-         "shape, tint, enabled, quality, name"},
+         "shape, tint, enabled, quality, pin, name"},
         {"effects: [\"\xC3\xA4\xC3\xB6\": {}, {}]",
          "c.yaml:1:11: no effect \"\xC3\xA4\xC3\xB6\"; expected one of blur, shade"},
         {"# \xC3\xA4\xC3\xB6\n{\"\xC3\xA4\": 1, \"\xC3\xA4\": 2}",
@@ -224,6 +224,53 @@ TEST_CASE("a chain says what may be skipped") {
           == "c.yaml:1:7: \"skip\": expected nothing, exact, code or visible, found \"all\"");
     CHECK(parse_error("skip: [exact]\neffects: [blur]\n")
           == "c.yaml:1:7: \"skip\": expected nothing, exact, code or visible, found a list");
+}
+
+TEST_CASE("a chain asks for a budget") {
+    using postfx::Budget;
+    CHECK_FALSE(parse("effects: [blur]").budget);
+    CHECK(parse("budget: {ms: 6}\neffects: [blur]").budget == Budget{Budget::Of::ms, 6});
+    CHECK(parse("effects: [blur]\nbudget: {error: 1e-2}").budget == Budget{Budget::Of::error, 0.01});
+    const auto [budget, expected] = GENERATE(table<std::string, std::string>({
+        {"6", R"(c.yaml:1:9: "budget": expected {ms: MILLISECONDS} or {error: SHARE}, found "6")"},
+        {"{}", R"(c.yaml:1:9: "budget": expected {ms: MILLISECONDS} or {error: SHARE}, found a map)"},
+        {"", R"(c.yaml:1:1: "budget": expected {ms: MILLISECONDS} or {error: SHARE}, found nothing)"},
+        {"{ms: 6, error: 1}",
+         R"(c.yaml:1:17: "budget" has two keys; expected one of them: {ms: MILLISECONDS} or {error: SHARE})"},
+        {"{eror: 1}", R"(c.yaml:1:10: "budget" has no key "eror"; did you mean "error"?)"},
+        {"{seconds: 1}", R"(c.yaml:1:10: "budget" has no key "seconds"; expected one of ms, error)"},
+        {"{ms: 0}", R"(c.yaml:1:14: budget.ms: expected a number above 0, found "0")"},
+        {"{ms: -6}", R"(c.yaml:1:14: budget.ms: expected a number above 0, found "-6")"},
+        {"{ms: .inf}", R"(c.yaml:1:14: budget.ms: expected a number above 0, found ".inf")"},
+        {"{ms: 1e999}",
+         R"(c.yaml:1:14: budget.ms: "1e999" does not fit a 64-bit float; expected a number above 0)"},
+        {"{error: small}", R"(c.yaml:1:17: budget.error: expected a number above 0, found "small")"},
+    }));
+    CHECK(parse_error("budget: " + budget + "\neffects: [blur]") == expected);
+}
+
+TEST_CASE("a budget on the command line") {
+    using postfx::Budget;
+    CHECK(postfx::parse_budget("ms=6", "--budget") == Budget{Budget::Of::ms, 6});
+    CHECK(postfx::parse_budget("error=0.01", "--budget") == Budget{Budget::Of::error, 0.01});
+    const auto message = [](const std::string& text) {
+        return error_of([&] { postfx::parse_budget(text, "--budget"); });
+    };
+    CHECK(message("6") == "--budget: expected ms=MILLISECONDS or error=SHARE, found \"6\"");
+    CHECK(message("seconds=1") == "--budget:1:1: \"budget\" has no key \"seconds\"; expected one of ms, error");
+    CHECK(message("ms=fast") == "--budget:1:5: budget.ms: expected a number above 0, found \"fast\"");
+}
+
+TEST_CASE("a level is pinned") {
+    const ChainEntry entry = parse("effects: [blur: {pin: low}]").entries[0];
+    CHECK(entry.level == 0);
+    CHECK(entry.pinned);
+    CHECK_FALSE(parse("effects: [blur: {quality: low}]").entries[0].pinned);
+    CHECK(parse_error("effects: [blur: {pin: lwo}]")
+          == R"(c.yaml:1:23: blur.pin: expected one of low, high, found "lwo"; did you mean "low"?)");
+    CHECK(parse_error("effects: [shade: {pin: low}]") == "c.yaml:1:24: shade has no quality levels");
+    CHECK(parse_error("effects: [blur: {pin: low, quality: high}]")
+          == "c.yaml:1:28: blur has quality and pin; give quality, or pin to keep the level under a budget");
 }
 
 TEST_CASE("an error knows its place") {
@@ -306,7 +353,7 @@ TEST_CASE("the schema says what the reader accepts") {
     const auto schema = nlohmann::json::parse(postfx::chain_schema(catalog()));
     CHECK(schema["$schema"] == "https://json-schema.org/draft/2020-12/schema");
     CHECK(schema["additionalProperties"] == false);
-    CHECK(schema["properties"].size() == 4);
+    CHECK(schema["properties"].size() == 5);
     CHECK(schema["dependentRequired"]["overrides"] == nlohmann::json::array({"include"}));
     CHECK(schema["anyOf"][0]["required"] == nlohmann::json::array({"effects"}));
     CHECK(schema["anyOf"][1]["required"] == nlohmann::json::array({"include"}));
@@ -322,7 +369,7 @@ TEST_CASE("the schema says what the reader accepts") {
     CHECK(effect["description"] == "Spreads light");
     CHECK(effect["additionalProperties"] == false);
     const auto& settings = effect["properties"];
-    CHECK(settings.size() == 8);
+    CHECK(settings.size() == 9);
     const nlohmann::json intensity = {{"description", "How strong it is (stops)"},
                                       {"type", "number"},
                                       {"minimum", 0},
@@ -342,6 +389,11 @@ TEST_CASE("the schema says what the reader accepts") {
     CHECK(settings["tint"]["default"] == nlohmann::json::array({1, 0.5, 0}));
     CHECK(settings["quality"]["enum"] == nlohmann::json::array({"low", "high"}));
     CHECK(settings["quality"]["default"] == "high");
+    CHECK(settings["pin"]["enum"] == nlohmann::json::array({"low", "high"}));
+    CHECK_FALSE(settings["pin"].contains("default"));
+    CHECK(effect["not"]["required"] == nlohmann::json::array({"quality", "pin"}));
+    CHECK(schema["properties"]["budget"]["maxProperties"] == 1);
+    CHECK(schema["properties"]["budget"]["properties"]["ms"]["exclusiveMinimum"] == 0);
     CHECK_FALSE(schema["$defs"]["shade"]["properties"].contains("quality"));
 
     const auto without_plugins = nlohmann::json::parse(postfx::chain_schema(postfx::Catalog()));

@@ -63,7 +63,7 @@ struct EffectInfo {
     int default_level = 0;
     std::vector<SourceInfo> sources;
     std::filesystem::path module_path;
-    const postfx_effect* abi = nullptr; ///< stays mapped until the process ends
+    const postfx_effect* abi = nullptr;                          ///< stays mapped until the process ends
     void (*gain)(const postfx_request*, postfx_gain*) = nullptr; ///< may be absent
 
     /// Index into parameters; nothing if there is none of that id.

@@ -8,9 +8,11 @@
 //     std::uint32_t picture = executor.run(inputs);               // a GL texture
 #pragma once
 
+#include <postfx/budget.hpp>
 #include <postfx/camera.hpp>
 #include <postfx/catalog.hpp>
 #include <postfx/chain.hpp>
+#include <postfx/curves.hpp>
 #include <postfx/error.hpp>
 #include <postfx/executor.hpp>
 #include <postfx/format.hpp>

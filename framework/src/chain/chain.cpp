@@ -29,6 +29,10 @@ std::optional<Skip> skip_by_word(std::string_view word) {
     return static_cast<Skip>(found - skip_words.begin());
 }
 
+std::string_view budget_word(Budget::Of of) {
+    return of == Budget::Of::ms ? "ms" : "error";
+}
+
 bool ChainEntry::set(std::string_view parameter, double value) {
     const auto index = effect->find_parameter(parameter);
     if (!index) throw Error(unknown_parameter(*effect, parameter));
@@ -54,7 +58,7 @@ ChainEntry& Chain::add(const Catalog& catalog, std::string_view effect_id) {
     for (int n = 2; find(name) != nullptr; ++n)
         name = fmt::format("{}_{}", effect->id, n);
     return entries.emplace_back(
-        ChainEntry{effect, name, true, effect->default_level, effect->default_values()});
+        ChainEntry{effect, name, true, effect->default_level, false, effect->default_values()});
 }
 
 ChainEntry* Chain::find(std::string_view name) {

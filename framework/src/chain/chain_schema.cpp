@@ -69,15 +69,14 @@ Json parameter_schema(const ParameterInfo& parameter) {
     return schema;
 }
 
-Json quality_schema(const EffectInfo& effect) {
-    std::string description = "Quality against time.";
+/// Of `quality` and `pin`.
+Json level_schema(const EffectInfo& effect, std::string description) {
     Json words = Json::array();
     for (const LevelInfo& level : effect.levels) {
         words.push_back(level.id);
         description += fmt::format(" {}: {}.", level.id, level.help);
     }
-    const LevelInfo& default_level = effect.levels.at(static_cast<std::size_t>(effect.default_level));
-    return {{"description", description}, {"type", "string"}, {"enum", words}, {"default", default_level.id}};
+    return {{"description", description}, {"type", "string"}, {"enum", words}};
 }
 
 /// The map of an effect's settings.
@@ -87,13 +86,34 @@ Json effect_schema(const EffectInfo& effect) {
         settings[parameter.id] = parameter_schema(parameter);
     settings["enabled"] = {
         {"description", "false leaves the effect out"}, {"type", "boolean"}, {"default", true}};
-    if (!effect.levels.empty()) settings["quality"] = quality_schema(effect);
+    if (!effect.levels.empty()) {
+        settings["quality"] = level_schema(effect, "Quality against time; a budget may change it.");
+        settings["quality"]["default"] = effect.levels.at(static_cast<std::size_t>(effect.default_level)).id;
+        settings["pin"] = level_schema(effect, "Quality that no budget changes.");
+    }
     settings["name"] = {{"description", "What the rest of the program calls this entry; unique in the chain"},
                         {"type", "string"},
                         {"pattern", "^[a-z][a-z0-9_]*$"}};
     return {{"description", effect.help},
             {"type", {"object", "null"}},
             {"properties", settings},
+            {"not", {{"type", "object"}, {"required", {"quality", "pin"}}}},
+            {"additionalProperties", false}};
+}
+
+Json budget_schema() {
+    const auto limit = [](std::string_view description) {
+        return Json{{"description", description}, {"type", "number"}, {"exclusiveMinimum", 0}};
+    };
+    return {{"description",
+             "Levels are chosen by measured curves: the least error within a time, or the least time within "
+             "an error"},
+            {"type", "object"},
+            {"properties",
+             {{"ms", limit("Milliseconds for the whole chain")},
+              {"error", limit("Relative root mean square, all effects together")}}},
+            {"minProperties", 1},
+            {"maxProperties", 1},
             {"additionalProperties", false}};
 }
 
@@ -142,6 +162,7 @@ std::string chain_schema(const Catalog& catalog) {
           {"type", "string"},
           {"enum", {"nothing", "exact", "code", "visible"}},
           {"default", skip_word(Chain{}.skip)}}},
+        {"budget", budget_schema()},
         {"effects",
          {{"description", "The effects in the order in which they are applied"},
           {"type", {"array", "null"}},

@@ -34,8 +34,9 @@ bool is_name(std::string_view name) {
     });
 }
 
-int read_level(const YamlNode& node, const EffectInfo& effect) {
-    const std::string subject = effect.id + ".quality";
+/// `key`: what the level is of, "quality" or "pin".
+int read_level(const YamlNode& node, const EffectInfo& effect, const std::string& key) {
+    const std::string subject = effect.id + "." + key;
     if (effect.levels.empty()) throw Error(node.place, effect.id + " has no quality levels");
     std::vector<std::string> known;
     for (const LevelInfo& level : effect.levels)
@@ -51,18 +52,34 @@ int read_level(const YamlNode& node, const EffectInfo& effect) {
     return static_cast<int>(found - known.begin());
 }
 
-/// One `key: value` of an effect: a parameter, `enabled` or `quality`.
+/// One `key: value` of an effect: a parameter, `enabled`, `quality` or `pin`.
 void read_setting(const YamlMember& setting, ChainEntry& entry) {
     const EffectInfo& effect = *entry.effect;
     const std::string& key = setting.key.text;
     if (key == "enabled") {
         entry.enabled = read_toggle(setting.value, effect.id + ".enabled");
-    } else if (key == "quality") {
-        entry.level = read_level(setting.value, effect);
+    } else if (key == "quality" || key == "pin") {
+        entry.level = read_level(setting.value, effect, key);
+        entry.pinned = key == "pin";
     } else if (const auto index = effect.find_parameter(key)) {
         entry.values[*index] = read_value(setting.value, effect, effect.parameters[*index]);
     } else {
-        throw Error(setting.key.place, unknown_parameter(effect, key, {"enabled", "quality", "name"}));
+        throw Error(setting.key.place, unknown_parameter(effect, key, {"enabled", "quality", "pin", "name"}));
+    }
+}
+
+/// Both would set the level, one for good.
+void refuse_quality_beside_pin(const YamlNode& settings, const EffectInfo& effect) {
+    const YamlNode* first = nullptr;
+    for (const YamlMember& setting : settings.members) {
+        if (setting.key.text != "quality" && setting.key.text != "pin") continue;
+        if (first != nullptr) {
+            throw Error(setting.key.place,
+                        fmt::format("{} has quality and pin; give quality, or pin to keep the level "
+                                    "under a budget",
+                                    effect.id));
+        }
+        first = &setting.key;
     }
 }
 
@@ -118,6 +135,7 @@ void read_item(const YamlNode& item, const Catalog& catalog, Chain& chain) {
     ChainEntry entry = std::move(add_effect(id, catalog, chain));
     chain.entries.pop_back(); // its name is free again for its own `name:`
     expect(settings, Kind::map, entry.effect->id, "a map {parameter: value}");
+    refuse_quality_beside_pin(settings, *entry.effect);
     for (const YamlMember& setting : settings.members) {
         if (setting.key.text == "name") {
             read_name(setting.value, chain, entry);
@@ -139,6 +157,7 @@ void read_override(const YamlMember& change, Chain& chain) {
                                 names.empty() ? "; it is empty" : nearest_or_all(change.key.text, names)));
     }
     expect(change.value, Kind::map, "override of " + entry->name, "a map {parameter: value}");
+    refuse_quality_beside_pin(change.value, *entry->effect);
     for (const YamlMember& setting : change.value.members) {
         if (setting.key.text == "name") {
             throw Error(setting.key.place, "an override can't change the name of an included effect");
@@ -152,16 +171,39 @@ Skip read_skip(const YamlNode& node) {
     refuse(node, "\"skip\"", "nothing, exact, code or visible");
 }
 
+double read_limit(const YamlNode& node, const std::string& subject) {
+    const std::string expected = "a number above 0";
+    const double limit = read_number(node, subject, expected);
+    if (!(limit > 0)) refuse(node, subject, expected);
+    return limit;
+}
+
+Budget read_budget(const YamlNode& node) {
+    constexpr const char* expected = "{ms: MILLISECONDS} or {error: SHARE}";
+    if (!node.is(Kind::map) || node.members.empty()) refuse(node, "\"budget\"", expected);
+    if (node.members.size() > 1) {
+        throw Error(node.members[1].key.place,
+                    fmt::format("\"budget\" has two keys; expected one of them: {}", expected));
+    }
+    const auto& [key, value] = node.members[0];
+    for (const Budget::Of of : {Budget::Of::ms, Budget::Of::error}) {
+        if (key.text == budget_word(of)) return {of, read_limit(value, "budget." + key.text)};
+    }
+    throw Error(key.place, fmt::format("\"budget\" has no key {}{}", quote(key.text),
+                                       nearest_or_all(key.text, {"ms", "error"})));
+}
+
 /// The keys of a chain file; null where the file does not have one.
 struct Sections {
     const YamlNode* include = nullptr;
     const YamlNode* overrides = nullptr;
     const YamlNode* effects = nullptr;
     const YamlNode* skip = nullptr;
+    const YamlNode* budget = nullptr;
 };
 
 Sections split(const YamlNode& root) {
-    const std::vector<std::string> known = {"effects", "include", "overrides", "skip"};
+    const std::vector<std::string> known = {"budget", "effects", "include", "overrides", "skip"};
     if (root.is(Kind::nothing))
         throw Error(root.place, "the chain is empty; expected \"effects\" or \"include\"");
     if (!root.is(Kind::map)) refuse(root, "a chain", "\"effects:\" and a list, or \"include:\" and a file");
@@ -177,6 +219,8 @@ Sections split(const YamlNode& root) {
             sections.effects = &value;
         } else if (key.text == "skip") {
             sections.skip = &value;
+        } else if (key.text == "budget") {
+            sections.budget = &value;
         } else {
             throw Error(key.place, fmt::format("a chain has no key {}{}", quote(key.text),
                                                nearest_or_all(key.text, known)));
@@ -209,6 +253,7 @@ public:
                 read_override(change, chain);
         }
         if (sections.skip != nullptr) chain.skip = read_skip(*sections.skip);
+        if (sections.budget != nullptr) chain.budget = read_budget(*sections.budget);
         if (sections.effects != nullptr) {
             expect(*sections.effects, Kind::list, "\"effects\"", "a list of effects");
             for (const YamlNode& item : sections.effects->items)
@@ -286,6 +331,15 @@ Chain read_chain(const fs::path& file, const Catalog& catalog,
 Chain parse_chain(const std::string& yaml, const fs::path& origin, const Catalog& catalog,
                   const std::vector<fs::path>& include_directories) {
     return Reader(catalog, include_directories).read(yaml, origin);
+}
+
+Budget parse_budget(const std::string& text, const std::string& origin) {
+    const std::size_t equals = text.find('=');
+    if (equals == std::string::npos)
+        throw Error(Place{.file = origin},
+                    fmt::format("expected ms=MILLISECONDS or error=SHARE, found {}", quote(text)));
+    return read_budget(
+        parse_yaml(fmt::format("{}: {}", text.substr(0, equals), text.substr(equals + 1)), origin));
 }
 
 void parse_chain_entry(const std::string& yaml, const std::string& origin, const Catalog& catalog,

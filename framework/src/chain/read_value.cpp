@@ -14,25 +14,6 @@ namespace {
     throw Error(node.place, fmt::format("{}: expected {}, found {}", subject, expected, node.found()));
 }
 
-/// The node's decimal number (YAML 1.2 core schema, without .inf and .nan, which no parameter can take).
-double read_number(const YamlNode& node, std::string_view subject, std::string_view expected) {
-    std::string_view digits = node.text;
-    if (digits.starts_with('+')) digits.remove_prefix(1);
-    const bool decimal = node.is(YamlNode::Kind::scalar) && !node.quoted && !digits.starts_with("+")
-                         && digits.find_first_not_of("0123456789+-.eE") == std::string_view::npos
-                         && !node.text.starts_with("+-");
-    double value = 0;
-    const auto [end, failure] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
-    if (!decimal || end != digits.data() + digits.size() || failure == std::errc::invalid_argument) {
-        refuse(node, subject, expected);
-    }
-    if (failure == std::errc::result_out_of_range) {
-        throw Error(node.place, fmt::format("{}: {} does not fit a 64-bit float; expected {}", subject,
-                                            quote(node.text), expected));
-    }
-    return value == 0 ? 0.0 : value; // no negative zero: 1/x and sign tests in shaders see it
-}
-
 double read_number_in_range(const YamlNode& node, std::string_view subject, const ParameterInfo& parameter) {
     const double value = read_number(node, subject, expected_value(parameter));
     if (value < parameter.minimum || value > parameter.maximum) {
@@ -78,6 +59,25 @@ Value read_color(const YamlNode& node, const std::string& subject, const Paramet
 }
 
 } // namespace
+
+/// The node's decimal number (YAML 1.2 core schema, without .inf and .nan, which no parameter can take).
+double read_number(const YamlNode& node, std::string_view subject, std::string_view expected) {
+    std::string_view digits = node.text;
+    if (digits.starts_with('+')) digits.remove_prefix(1);
+    const bool decimal = node.is(YamlNode::Kind::scalar) && !node.quoted && !digits.starts_with("+")
+                         && digits.find_first_not_of("0123456789+-.eE") == std::string_view::npos
+                         && !node.text.starts_with("+-");
+    double value = 0;
+    const auto [end, failure] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
+    if (!decimal || end != digits.data() + digits.size() || failure == std::errc::invalid_argument) {
+        refuse(node, subject, expected);
+    }
+    if (failure == std::errc::result_out_of_range) {
+        throw Error(node.place, fmt::format("{}: {} does not fit a 64-bit float; expected {}", subject,
+                                            quote(node.text), expected));
+    }
+    return value == 0 ? 0.0 : value; // no negative zero: 1/x and sign tests in shaders see it
+}
 
 Value read_value(const YamlNode& node, const EffectInfo& effect, const ParameterInfo& parameter) {
     const std::string subject = fmt::format("{}.{}", effect.id, parameter.id);

@@ -17,6 +17,9 @@ Value read_value(const YamlNode& node, const EffectInfo& effect, const Parameter
 /// `true` or `false`. `subject` names the value in messages.
 bool read_toggle(const YamlNode& node, std::string_view subject);
 
+/// A finite decimal number. `subject` and `expected` are for messages.
+double read_number(const YamlNode& node, std::string_view subject, std::string_view expected);
+
 /// What a value must be: "a number in 0..4 (stops)", "true or false", "one of round, square".
 std::string expected_value(const ParameterInfo& parameter);
 

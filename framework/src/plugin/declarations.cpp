@@ -14,7 +14,7 @@
 namespace postfx {
 namespace {
 
-constexpr std::array reserved_ids = {"enabled", "quality", "name"};
+constexpr std::array reserved_ids = {"enabled", "quality", "pin", "name"};
 constexpr std::array stages = {"scene", "scene_to_display", "display"};
 constexpr std::array known_attachments = {"depth", "normal", "emission", "ambient"};
 constexpr std::array<std::pair<std::string_view, ParameterKind>, 5> kinds = {{
