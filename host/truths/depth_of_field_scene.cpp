@@ -4,8 +4,6 @@
 #include "thin_lens.hpp"
 #include "truth.hpp"
 
-#include <postfx/error.hpp>
-
 #include <fmt/format.h>
 
 namespace postfx::host {
@@ -13,15 +11,12 @@ namespace {
 
 class LensPositions : public Truth {
 public:
+    static constexpr bool takes_given = false;
+
     explicit LensPositions(const TruthRequest& request)
         : renderer_(request.scene, {.samples = request.scene_samples}),
           camera_(request.scene.camera_at(request.time)), lens_(thin_lens(request, camera_)),
-          time_(request.time), width_(request.width), height_(request.height) {
-        if (request.given)
-            throw Error(
-                Place{.effect = request.entry.effect->id},
-                "the scene's truth draws the scene itself; a given picture has one of kind \"layer\"");
-    }
+          time_(request.time), width_(request.width), height_(request.height) {}
 
     std::string description(int samples) const override {
         return fmt::format("{} lens positions, off-axis frusta, no limit on circles of confusion", samples);

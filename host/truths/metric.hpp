@@ -32,6 +32,9 @@ public:
     virtual Image64 draw(const ChainEntry& entry, const MethodInput& input) const = 0;
 };
 
+/// The method's entry with other values. Throws Error for an unknown parameter.
+ChainEntry entry_with(const Method& method, const std::map<std::string, double>& values);
+
 struct RegisteredMetric {
     std::string effect; ///< id
     std::string name;   ///< "edge_position": lower is better, 0 is perfect

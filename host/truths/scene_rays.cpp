@@ -15,13 +15,18 @@ struct SceneRays::State {
     RTCDevice device = rtcNewDevice(nullptr);
     RTCScene scene = nullptr;
     std::vector<glm::dmat4> nodes;
+    struct Placed {
+        std::shared_ptr<const Mesh> mesh;
+        glm::dmat3 normal_to_world{1};
+    };
+    std::vector<Placed> meshes; ///< by Embree's number of the geometry
 
     ~State() {
         if (scene) rtcReleaseScene(scene);
         if (device) rtcReleaseDevice(device);
     }
     void check() const;
-    void add(const Mesh& mesh, const glm::dmat4& place) const;
+    void add(const std::shared_ptr<const Mesh>& shared, const glm::dmat4& place);
 };
 
 void SceneRays::State::check() const {
@@ -30,7 +35,8 @@ void SceneRays::State::check() const {
         throw Error(fmt::format("Embree failed with error {}", static_cast<int>(error)));
 }
 
-void SceneRays::State::add(const Mesh& mesh, const glm::dmat4& place) const {
+void SceneRays::State::add(const std::shared_ptr<const Mesh>& shared, const glm::dmat4& place) {
+    const Mesh& mesh = *shared;
     if (mesh.empty()) return;
     RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
     auto* points = static_cast<float*>(rtcSetNewGeometryBuffer(
@@ -45,7 +51,8 @@ void SceneRays::State::add(const Mesh& mesh, const glm::dmat4& place) const {
     }
     std::copy(mesh.indices.begin(), mesh.indices.end(), triangles);
     rtcCommitGeometry(geometry);
-    rtcAttachGeometry(scene, geometry);
+    rtcAttachGeometryByID(scene, geometry, static_cast<unsigned>(meshes.size()));
+    meshes.push_back({shared, glm::transpose(glm::inverse(glm::dmat3(place)))});
     rtcReleaseGeometry(geometry);
 }
 
@@ -57,7 +64,7 @@ SceneRays::SceneRays(const Scene& scene, double time) : state_(std::make_unique<
     scene.place_nodes(time, state_->nodes);
     for (std::size_t i = 0; i < scene.nodes.size(); ++i) {
         for (const Part& part : scene.nodes[i].parts) {
-            if (!scene.materials[part.material].blended) state_->add(*part.mesh, state_->nodes[i]);
+            if (!scene.materials[part.material].blended) state_->add(part.mesh, state_->nodes[i]);
         }
     }
     rtcCommitScene(state_->scene);
@@ -83,7 +90,22 @@ std::optional<SceneRays::Hit> SceneRays::hit(glm::dvec3 origin, glm::dvec3 direc
     rtcIntersect1(state_->scene, &context, &query);
     if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
     const glm::dvec3 normal = glm::normalize(glm::dvec3(query.hit.Ng_x, query.hit.Ng_y, query.hit.Ng_z));
-    return Hit{ray.tfar, glm::dot(normal, direction) < 0 ? normal : -normal};
+    return Hit{.distance = ray.tfar,
+               .normal = glm::dot(normal, direction) < 0 ? normal : -normal,
+               .mesh = query.hit.geomID,
+               .triangle = query.hit.primID,
+               .within = {query.hit.u, query.hit.v}};
+}
+
+glm::dvec3 SceneRays::shading_normal(const Hit& hit) const {
+    const State::Placed& placed = state_->meshes[hit.mesh];
+    const auto corner = [&](std::size_t i) {
+        const std::uint32_t vertex = placed.mesh->indices[3 * std::size_t(hit.triangle) + i];
+        return glm::dvec3(placed.mesh->vertices[vertex].normal);
+    };
+    const glm::dvec2 w = hit.within;
+    return glm::normalize(placed.normal_to_world
+                          * ((1 - w.x - w.y) * corner(0) + w.x * corner(1) + w.y * corner(2)));
 }
 
 } // namespace postfx::host

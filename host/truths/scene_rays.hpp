@@ -5,6 +5,7 @@
 
 #include <glm/glm.hpp>
 
+#include <cstdint>
 #include <memory>
 #include <optional>
 
@@ -22,9 +23,15 @@ public:
     struct Hit {
         double distance = 0;  ///< metres
         glm::dvec3 normal{0}; ///< of the triangle, unit, towards where the ray came from
+        std::uint32_t mesh = 0, triangle = 0;
+        glm::dvec2 within{0}; ///< weights of the triangle's second and third corner
     };
     /// The first surface, front or back, up to `reach` metres. `direction` is unit. Several threads may ask.
     std::optional<Hit> hit(glm::dvec3 origin, glm::dvec3 direction, double reach) const;
+
+    /// The one that is shaded there, without the bumps of textures: between those of the triangle's corners. World space,
+    /// unit, on the surface's front whichever side was met.
+    glm::dvec3 shading_normal(const Hit& hit) const;
 
 private:
     struct State;

@@ -1,5 +1,7 @@
 // Ambient occlusion of the scene itself: rays from what each pixel shows, against the scene's triangles.
 #include "drawn_scene.hpp"
+#include "occluded_light.hpp"
+#include "rows.hpp"
 #include "sampling.hpp"
 #include "scene_rays.hpp"
 #include "truth.hpp"
@@ -11,8 +13,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
-#include <thread>
 
 namespace postfx::host {
 namespace {
@@ -21,18 +21,6 @@ namespace {
 struct SurfacePoint {
     glm::dvec3 position{0}, normal{0}; ///< metres; a normal of 0: nothing there that could be occluded
 };
-
-/// Every row once, on all cores.
-void for_each_row(int rows, const std::function<void(int)>& work) {
-    const int count = std::clamp(static_cast<int>(std::thread::hardware_concurrency()), 1, rows);
-    std::vector<std::jthread> threads;
-    for (int first = 0; first < count; ++first) {
-        threads.emplace_back([=, &work] {
-            for (int row = first; row < rows; row += count)
-                work(row);
-        });
-    }
-}
 
 /// A direction over `normal`, with a density that is its cosine over pi.
 glm::dvec3 cosine_direction(glm::dvec3 normal, glm::dvec2 square) {
@@ -49,14 +37,8 @@ class OcclusionRays : public Truth {
 public:
     explicit OcclusionRays(const TruthRequest& request)
         : rays_(request.scene, request.time), radius_(request.value("radius")),
-          falloff_(request.value("falloff")), strength_(request.value("strength")),
-          shows_visibility_(request.value("view") != 0) {
+          falloff_(request.value("falloff")), light_(draw_light(request)) {
         find_points(request);
-        SceneRenderer renderer(request.scene, {.samples = request.scene_samples});
-        const SceneFrame frame =
-            renderer.render(request.width, request.height, request.time, {"color", "ambient"});
-        color_ = given_light(request, frame);
-        ambient_ = read_light(frame, "ambient", request.width, request.height);
     }
 
     std::string description(int samples) const override {
@@ -75,16 +57,14 @@ public:
         });
     }
 
-    Image64 picture(const Image64& sum, int count) const override {
-        Image64 result = shows_visibility_ ? Image64(sum.width, sum.height, 3, 1) : color_;
-        for (std::size_t i = 0; i < result.values.size(); ++i) {
-            const double occlusion = strength_ * (1 - sum.values[i / 3] / count);
-            result.values[i] -= occlusion * (shows_visibility_ ? 1 : ambient_.values[i]);
-        }
-        return result;
-    }
+    Image64 picture(const Image64& sum, int count) const override { return light_.picture(sum, count); }
 
 private:
+    static OccludedLight draw_light(const TruthRequest& request) {
+        SceneRenderer renderer(request.scene, {.samples = request.scene_samples});
+        return {request, renderer.render(request.width, request.height, request.time, {"color", "ambient"})};
+    }
+
     /// With one sample per pixel, so that depth is that of one point of a surface. Its normal is the triangle's: the one
     /// that is shaded may look away from the viewer, or into the surface.
     void find_points(const TruthRequest& request) {
@@ -135,10 +115,9 @@ private:
     }
 
     SceneRays rays_;
-    double radius_, falloff_, strength_;
-    bool shows_visibility_;
+    double radius_, falloff_;
     std::vector<SurfacePoint> points_;
-    Image64 color_, ambient_;
+    OccludedLight light_;
 };
 
 const RegisterTruth<OcclusionRays> registered("ssao", "scene", "rays against the scene's triangles", 1024);

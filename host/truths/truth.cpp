@@ -6,12 +6,35 @@
 
 namespace postfx::host {
 
-double TruthRequest::value(std::string_view parameter) const {
+namespace {
+
+const Value& value_of(const ChainEntry& entry, std::string_view parameter) {
     const auto index = entry.effect->find_parameter(parameter);
     if (!index)
         throw Error(Place{.effect = entry.effect->id},
                     fmt::format("there is no parameter \"{}\"", parameter));
-    return entry.values[*index][0];
+    return entry.values[*index];
+}
+
+} // namespace
+
+double TruthRequest::value(std::string_view parameter) const {
+    return value_of(entry, parameter)[0];
+}
+
+std::array<double, 3> TruthRequest::color(std::string_view parameter) const {
+    const Value& value = value_of(entry, parameter);
+    return {value[0], value[1], value[2]};
+}
+
+std::string TruthRequest::all_values() const {
+    std::string text;
+    for (std::size_t i = 0; i < entry.values.size(); ++i) {
+        const Value& value = entry.values[i];
+        text += fmt::format("{}{} {} {} {}", i > 0 ? ", " : "", entry.effect->parameters[i].id, value[0],
+                            value[1], value[2]);
+    }
+    return text;
 }
 
 std::vector<RegisteredTruth>& registered_truths() {

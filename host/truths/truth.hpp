@@ -7,6 +7,7 @@
 #include <postfx/chain.hpp>
 #include <postfx/image.hpp>
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -24,18 +25,24 @@ struct TruthRequest {
         4; ///< per pixel of a drawn scene, 1 or 4: as in the pictures that are compared with the truth
     ChainEntry entry;        ///< the effect with its values; its level does not matter
     std::uint32_t frame = 0; ///< as in FrameInputs; for what changes from frame to frame
-    /// The picture that the effect is given, 3 channels of that size; null: the scene as it is drawn. A truth of kind
-    /// "scene" that draws the scene otherwise throws Error when there is one.
+    /// The picture that the effect is given, 3 channels of that size; null: the scene as it is drawn.
     std::shared_ptr<const Image64> given = nullptr;
 
     /// One of the entry's values. Throws Error when the effect has no such parameter.
     double value(std::string_view parameter) const;
+    /// All three channels of one.
+    std::array<double, 3> color(std::string_view parameter) const;
+    /// All of the entry's values, as text.
+    std::string all_values() const;
 };
 
 /// A mean over samples, each of which says something of every pixel. Even and odd samples are two sequences of their
 /// own: how far their means are apart is what the truth knows of its own error. Needs a current OpenGL 4.5 context.
 class Truth {
 public:
+    /// Of a picture that is given? False for what draws the scene in its own way.
+    static constexpr bool takes_given = true;
+
     virtual ~Truth() = default;
 
     /// What it is, in one line: "1024 lens positions, off-axis frusta, ...".
@@ -59,6 +66,7 @@ struct RegisteredTruth {
     int samples; ///< unless told otherwise
     /// What a picture has in common with it: every pixel, or only its statistics (noise of another making).
     enum class Compared { pixels, statistics } compared;
+    bool takes_given; ///< see Truth
     std::unique_ptr<Truth> (*make)(const TruthRequest& request);
 };
 
@@ -76,6 +84,7 @@ struct RegisterTruth {
     RegisterTruth(std::string effect, std::string kind, std::string help, int samples,
                   Compared compared = Compared::pixels) {
         registered_truths().push_back({std::move(effect), std::move(kind), std::move(help), samples, compared,
+                                       T::takes_given,
                                        [](const TruthRequest& request) -> std::unique_ptr<Truth> {
                                            return std::make_unique<T>(request);
                                        }});

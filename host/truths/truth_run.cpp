@@ -70,6 +70,11 @@ TruthRun::TruthRun(const RegisteredTruth& registered, const TruthRequest& reques
     if (samples < 2 || samples % 2 != 0)
         throw Error(
             fmt::format("{} samples can't be split in two halves; expected an even number from 2", samples));
+    if (request.given && !registered.takes_given)
+        throw Error(
+            Place{.effect = registered.effect},
+            fmt::format("the truth of kind \"{}\" draws the scene itself and can't be of a given picture",
+                        registered.kind));
     truth_ = registered.make(request);
     key_ =
         fmt::format("{} {} of {} at {} s, frame {}, {}x{}, {} per pixel, {} samples: {}", registered.effect,

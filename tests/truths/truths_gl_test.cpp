@@ -222,6 +222,11 @@ TEST_CASE("every truth knows its own error, which falls as it should") {
     for (const RegisteredTruth& registered : registered_truths()) {
         INFO(registered.effect << " " << registered.kind);
         const TruthRequest asked = room_request(registered, 40);
+        if (registered.samples == 2) {
+            // Reckoned in two ways, which do not sample: only rounding and steps are between them.
+            CHECK(truth(asked, registered.kind, 2).own_error < 1e-9);
+            continue;
+        }
         const TruthResult little = truth(asked, registered.kind, 32),
                           more = truth(asked, registered.kind, 128),
                           much = truth(asked, registered.kind, 2048);
@@ -286,7 +291,7 @@ TEST_CASE("sums of another truth are not taken, damaged ones are refused") {
 }
 
 TEST_CASE("a truth that is not there is refused with those that are") {
-    CHECK_THROWS_WITH(find_truth("ssao", "layer"), Catch::Contains("it has scene"));
+    CHECK_THROWS_WITH(find_truth("fog", "layer"), Catch::Contains("it has scene"));
     CHECK_THROWS_WITH(find_truth("nothing", "scene"), Catch::Contains("depth_of_field (layer)"));
     CHECK_THROWS_AS(TruthRun(find_truth("ssao", "scene"), request(room, "ssao", 8), 3), postfx::Error);
 }
