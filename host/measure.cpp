@@ -84,12 +84,12 @@ Image PlainPass::picture() const {
 }
 
 void measure(std::vector<Case>& cases, int rounds, ProgressBar& progress,
-             const std::function<void()>& after_round) {
+             const std::function<void()>& after_round, int warm_up) {
     std::mt19937 random(1);
     std::vector<std::size_t> order(cases.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
     const gl::Query query = make_query();
-    for (int round = -warm_up_rounds; round < rounds; ++round) {
+    for (int round = -warm_up; round < rounds; ++round) {
         std::shuffle(order.begin(), order.end(), random);
         for (std::size_t i : order)
             draw_timed(cases[i], query, round >= 0);

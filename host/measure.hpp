@@ -52,9 +52,9 @@ private:
 inline constexpr int warm_up_rounds = 3;
 
 /// Draw every case once per round, in another order each time. `after_round` is called behind each that counts.
-/// `progress` advances `rounds` + warm_up_rounds times.
+/// `progress` advances `rounds` + `warm_up` times.
 void measure(std::vector<Case>& cases, int rounds, ProgressBar& progress,
-             const std::function<void()>& after_round = {});
+             const std::function<void()>& after_round = {}, int warm_up = warm_up_rounds);
 
 /// 0 without samples.
 double quantile(std::vector<double> samples, double share);

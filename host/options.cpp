@@ -36,6 +36,18 @@ void ChainOptions::declare(CLI::App& app) {
         ->default_str("")
         ->allow_extra_args(false);
     app.add_flag("--run-all", run_all_, "Run every enabled effect, called for or not");
+    app.add_option(
+           "--budget", budget_,
+           "Choose the effects' levels: ms=6 (least error within a time) or error=0.01 (least time within "
+           "an error); instead of the chain's own budget")
+        ->type_name("KIND=LIMIT")
+        ->default_str("");
+    app.add_option(
+           "--curves", curves_,
+           "What levels cost, for a budget; without, what `postfx calibrate` measured on this device, or "
+           "what comes along")
+        ->type_name("FILE.json")
+        ->default_str("");
     app.footer(default_chain_.empty() ? ""
                                       : "Without --chain and --effect the chain is " + default_chain_ + ".");
 }
@@ -47,6 +59,7 @@ Chain ChainOptions::read(const Catalog& catalog) const {
     for (const std::string& effect : effects_)
         parse_chain_entry(effect, "--effect", catalog, chain);
     if (run_all_) chain.skip = Skip::nothing;
+    if (!budget_.empty()) chain.budget = parse_budget(budget_, "--budget");
     return chain;
 }
 

@@ -22,7 +22,8 @@ private:
     std::vector<std::string> plugin_directories_;
 };
 
-/// --chain and --effect: which effects are used; --run-all: whether called for or not.
+/// --chain and --effect: which effects are used; --run-all: whether called for or not; --budget and --curves: at which
+/// levels.
 class ChainOptions {
 public:
     /// `default_chain` is used when neither option is given.
@@ -31,6 +32,8 @@ public:
     /// Was any of the two given?
     bool given() const { return !chain_.empty() || !effects_.empty(); }
     bool run_all() const { return run_all_; }
+    /// The file of --curves; "" = those of the device.
+    const std::string& curves() const { return curves_; }
     /// The chain file's effects, then those of --effect in order.
     Chain read(const Catalog& catalog) const;
 
@@ -38,6 +41,7 @@ private:
     std::string default_chain_;
     std::string chain_;
     std::vector<std::string> effects_;
+    std::string budget_, curves_;
     bool run_all_ = false;
 };
 

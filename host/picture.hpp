@@ -22,6 +22,7 @@ public:
     const std::vector<std::string>& attachments() const { return plan_.attachments; }
     const Plan& plan() const { return plan_; }
     Chain& chain() { return chain_; }
+    const Chain& chain() const { return chain_; }
 
     /// Plan again for another camera or changed values. A failing shader throws and the old plan stays.
     void replan(const Facts& facts);

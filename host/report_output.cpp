@@ -13,15 +13,17 @@ void ReportOptions::declare(CLI::App& app) {
     app.add_flag("--no-times", no_times_, "Do not draw a second time to measure what each pass costs");
 }
 
-void ReportOptions::tell(const Report& report, const std::filesystem::path& output) const {
+void ReportOptions::tell(const Report& report, const std::optional<MetBudget>& budget,
+                         const std::filesystem::path& output) const {
     if (quiet_) return;
     if (json_) {
         nlohmann::ordered_json json = {{"output", output.string()}};
         json.update(nlohmann::ordered_json::parse(report_json(report)));
+        if (budget) json["budget"] = nlohmann::ordered_json::parse(budget->json());
         fmt::print("{}\n", json.dump(2));
         return;
     }
-    fmt::print("{}wrote {}\n", report_text(report), output.string());
+    fmt::print("{}{}wrote {}\n", report_text(report), budget ? budget->text() : "", output.string());
 }
 
 } // namespace postfx::host

@@ -1,6 +1,8 @@
 // How a finished run is told: for people on stdout, or as JSON for scripts.
 #pragma once
 
+#include "budget.hpp"
+
 #include <postfx/executor.hpp>
 
 #include <CLI/CLI.hpp>
@@ -16,8 +18,10 @@ public:
     void declare(CLI::App& app);
     bool wants_times() const { return !no_times_ && !quiet_; }
     Watch watch() const { return watch_nonfinite_ ? Watch::nonfinite : Watch::off; }
-    /// "wrote FILE" and the report, or {"output": FILE, ...report} as JSON.
-    void tell(const Report& report, const std::filesystem::path& output) const;
+    /// The report, what the budget bought if there was one, and "wrote FILE"; as JSON {"output": FILE, ...report,
+    /// "budget": ...}.
+    void tell(const Report& report, const std::optional<MetBudget>& budget,
+              const std::filesystem::path& output) const;
 
 private:
     bool json_ = false, quiet_ = false, no_times_ = false, watch_nonfinite_ = false;

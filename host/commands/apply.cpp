@@ -1,4 +1,5 @@
 // postfx apply: a chain on images that someone else made.
+#include "budget.hpp"
 #include "command.hpp"
 #include "depth_input.hpp"
 #include "gl_session.hpp"
@@ -82,6 +83,7 @@ public:
         images["color"] = widened(color.image);
 
         const GlSession session;
+        const std::optional<MetBudget> budget = meet_budget(chain, facts, chain_options_.curves());
         ChainRunner runner(std::move(chain), facts);
         std::map<std::string, gl::Texture> uploaded;
         Textures textures;
@@ -102,7 +104,7 @@ public:
         write_picture(runner, output_, has_alpha);
         if (report_options_.wants_times())
             runner.run(textures, frame, Timing::profile, report_options_.watch());
-        report_options_.tell(runner.executor().report(), output_);
+        report_options_.tell(runner.executor().report(), budget, output_);
         return Status::success;
     }
 

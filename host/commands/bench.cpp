@@ -1,4 +1,5 @@
 // postfx bench: what chains cost, measured alternately in one run and told in copy passes.
+#include "budget.hpp"
 #include "command.hpp"
 #include "gl_session.hpp"
 #include "measure.hpp"
@@ -101,6 +102,8 @@ private:
         if (chains_.empty()) chains_.emplace_back("cinematic");
         for (const std::string& name : chains_) {
             Chain chain = read_chain_named(name, catalog);
+            if (std::optional<MetBudget> budget = meet_budget(chain, facts_, ""))
+                budgets_.emplace_back(name, std::move(*budget));
             const auto add = [&](const std::string& variant, const Facts& facts) {
                 runners_.push_back({name + variant, std::make_unique<ChainRunner>(chain, facts)});
             };
@@ -210,6 +213,8 @@ private:
                 {"width", facts_.width},     {"height", facts_.height},
                 {"format", format_},         {"samples", samples_},
                 {"rivals", rival_notes_},    {"rows", nlohmann::ordered_json::array()}};
+            for (const auto& [name, budget] : budgets_)
+                json["budgets"][name] = nlohmann::ordered_json::parse(budget.json());
             for (const Case& row : cases) {
                 nlohmann::ordered_json item = {
                     {"name", row.name}, {"cpu_ms", spread(row.cpu_ms)}, {"wall_ms", spread(row.wall_ms)}};
@@ -238,6 +243,8 @@ private:
         }
         for (const std::string& note : rival_notes_)
             fmt::print("{}\n", note);
+        for (const auto& [name, budget] : budgets_)
+            fmt::print("\n{}, {}", name, budget.text());
     }
 
     SceneOptions scene_options_{"night_drive"};
@@ -252,6 +259,7 @@ private:
     FrameInputs frame_;
     Textures textures_;
     std::vector<NamedRunner> runners_;
+    std::vector<std::pair<std::string, MetBudget>> budgets_; ///< of the chains that have one, by name
     std::vector<Case> pass_rows_;
     std::vector<std::string> rival_notes_;
 };

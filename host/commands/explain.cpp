@@ -1,4 +1,5 @@
 // postfx explain: the plan, without drawing anything; with --measure, what the frame decides and what skipping saves.
+#include "budget.hpp"
 #include "command.hpp"
 #include "gl_session.hpp"
 #include "options.hpp"
@@ -41,30 +42,40 @@ public:
             throw Error("--measure compares with --run-all: give one of them");
         if (measure_ && !shader_.empty()) throw Error("--shader prints nothing else: leave --measure out");
         const Catalog catalog = catalog_options_.load();
-        const Chain chain = chain_options_.read(catalog);
+        Chain chain = chain_options_.read(catalog);
         const Scene scene = scene_options_.open();
         ViewBounds bounds(scene);
         Facts facts = scene_options_.facts(scene, bounds, output_for(output_));
+        // Nothing is drawn without --measure; but which device there is tells which curves hold.
+        std::optional<GlSession> session;
+        if (measure_ || (chain.budget && chain_options_.curves().empty())) session.emplace();
+        const std::optional<MetBudget> budget = meet_budget(chain, facts, chain_options_.curves());
         if (measure_) {
             facts.fold = true;
-            return tell_measured(chain, scene, facts);
+            return tell_measured(chain, scene, facts, budget, session->device().renderer);
         }
         const Plan plan = Planner().plan(chain, facts);
         if (!shader_.empty()) return print_shader(plan);
         Report report = describe(plan);
         report.clock = "none: explain draws nothing";
         if (json_) {
-            fmt::print("{}\n", report_json(report));
+            fmt::print("{}\n", json_of(report, budget).dump(2));
         } else {
-            fmt::print("{}attachments rendered: {}\n", report_text(report),
+            fmt::print("{}{}attachments rendered: {}\n", report_text(report), budget ? budget->text() : "",
                        fmt::join(plan.attachments, ", "));
         }
         return Status::success;
     }
 
 private:
-    Status tell_measured(const Chain& chain, const Scene& scene, const Facts& facts) const {
-        const GlSession session;
+    static nlohmann::ordered_json json_of(const Report& report, const std::optional<MetBudget>& budget) {
+        nlohmann::ordered_json json = nlohmann::ordered_json::parse(report_json(report));
+        if (budget) json["budget"] = nlohmann::ordered_json::parse(budget->json());
+        return json;
+    }
+
+    Status tell_measured(const Chain& chain, const Scene& scene, const Facts& facts,
+                         const std::optional<MetBudget>& budget, const std::string& device) const {
         SkippingStudy study(scene, facts, scene_options_.time());
         study.add("chain", chain);
         {
@@ -74,14 +85,13 @@ private:
         const SkippingStudy::Result& result = study.result();
         const SkippingStudy::Row& row = result.rows.front();
         if (json_) {
-            nlohmann::ordered_json json = nlohmann::ordered_json::parse(report_json(row.report));
-            json["measured"] = {{"device", session.device().renderer},
-                                {"rounds", result.rounds},
-                                {"copy_ms", result.copy_ms}};
+            nlohmann::ordered_json json = json_of(row.report, budget);
+            json["measured"] = {{"device", device}, {"rounds", result.rounds}, {"copy_ms", result.copy_ms}};
             json["measured"].update(skipping_json(row, result.copy_ms));
             fmt::print("{}\n", json.dump(2));
         } else {
-            fmt::print("{}{}", report_text(row.report), text_of(result, session.device().renderer));
+            fmt::print("{}{}{}", report_text(row.report), budget ? budget->text() : "",
+                       text_of(result, device));
         }
         return Status::success;
     }

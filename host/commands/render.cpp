@@ -1,4 +1,5 @@
 // postfx render: a scene through a chain to a picture or a numbered sequence.
+#include "budget.hpp"
 #include "command.hpp"
 #include "gl_session.hpp"
 #include "options.hpp"
@@ -75,6 +76,7 @@ public:
         check_parent(output_);
 
         const GlSession session;
+        const std::optional<MetBudget> budget = meet_budget(chain, facts, chain_options_.curves());
         ChainRunner runner(std::move(chain), facts);
         SceneRenderer renderer(scene, {.samples = samples_});
         ProgressBar progress("rendering", frames_);
@@ -83,7 +85,7 @@ public:
             progress.advance();
         }
         const fs::path told = frames_ == 1 ? fs::path(output_) : numbered(output_, frames_ - 1, frames_);
-        report_options_.tell(runner.executor().report(), told);
+        report_options_.tell(runner.executor().report(), budget, told);
         return Status::success;
     }
 

@@ -2,13 +2,12 @@
 #include "command.hpp"
 #include "effect_text.hpp"
 #include "gl_session.hpp"
+#include "interruption.hpp"
 #include "options.hpp"
 #include "picture.hpp"
 #include "resources.hpp"
+#include "truth_store.hpp"
 
-#include "truths/truth_run.hpp"
-
-#include <gl/clock.hpp>
 #include <image/files.hpp>
 
 #include <postfx/error.hpp>
@@ -18,32 +17,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <csignal>
 
 namespace fs = std::filesystem;
 
 namespace postfx::host {
 namespace {
-
-volatile std::sig_atomic_t asked_to_stop = 0;
-
-/// While it lives, the first interruption only asks to stop; a second one ends the program as ever.
-class StopOnInterrupt {
-public:
-    StopOnInterrupt() {
-        asked_to_stop = 0;
-        struct sigaction action = {};
-        action.sa_handler = [](int) { asked_to_stop = 1; };
-        action.sa_flags = static_cast<int>(SA_RESETHAND);
-        sigaction(SIGINT, &action, &before_);
-    }
-    ~StopOnInterrupt() { sigaction(SIGINT, &before_, nullptr); }
-    StopOnInterrupt(const StopOnInterrupt&) = delete;
-    StopOnInterrupt& operator=(const StopOnInterrupt&) = delete;
-
-private:
-    struct sigaction before_ = {};
-};
 
 std::string list_of_truths() {
     std::vector<std::string> lines;
@@ -109,11 +87,10 @@ public:
 
         const GlSession session;
         TruthRun run(registered, request, samples_ > 0 ? samples_ : registered.samples);
-        const fs::path file = store() / run.file_name();
+        const fs::path file = truth_store(store_) / run.file_name();
         if (!fresh_) run.resume(file);
-        const int before = run.done();
-        sum_up(run, file);
-        if (run.done() > before) run.save(file);
+        const StopOnInterrupt guard;
+        sum_up(run, file, "truth");
         if (run.done() == 0) return Status::interrupted;
         tell(run.result(), request, file);
         if (run.complete()) return Status::success;
@@ -123,22 +100,6 @@ public:
     }
 
 private:
-    /// Sums are saved now and then, so that not even a crash costs more than that.
-    static void sum_up(TruthRun& run, const fs::path& file) {
-        constexpr double seconds_between_saves = 20;
-        const StopOnInterrupt guard;
-        ProgressBar progress("truth", run.samples() - run.done());
-        double saved = gl::HostTime::now().wall_ms;
-        while (!run.complete() && asked_to_stop == 0) {
-            run.step();
-            progress.advance();
-            if (gl::HostTime::now().wall_ms - saved > 1000 * seconds_between_saves) {
-                run.save(file);
-                saved = gl::HostTime::now().wall_ms;
-            }
-        }
-    }
-
     TruthRequest read_request(const Catalog& catalog) const {
         Chain chain;
         parse_chain_entry(effect_text(), "EFFECT", catalog, chain);
@@ -164,17 +125,6 @@ private:
             values.push_back(fmt::format("{}: {}", value.substr(0, equals), value.substr(equals + 1)));
         }
         return fmt::format("{}: {{{}}}", effect_, fmt::join(values, ", "));
-    }
-
-    fs::path store() const {
-        const fs::path folder = !store_.empty() ? fs::path(store_) : cache_directory() / "truths";
-        if (store_.empty() && cache_directory().empty())
-            throw Error("there is no home for a cache; name a folder for the sums with --store");
-        std::error_code error;
-        fs::create_directories(folder, error);
-        if (error)
-            throw Error(Place{.file = folder.string()}, fmt::format("can't be made: {}", error.message()));
-        return folder;
     }
 
     void tell(const TruthResult& result, const TruthRequest& request, const fs::path& sums) const {

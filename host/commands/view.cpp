@@ -1,4 +1,5 @@
 // postfx view: the chain live in a window.
+#include "budget.hpp"
 #include "command.hpp"
 #include "gl_session.hpp"
 #include "options.hpp"
@@ -26,7 +27,7 @@ constexpr const char* help = "  W A S D, Q E   fly: forward, left, back, right, 
                              "  right mouse    look around\n"
                              "  1 - 9          turn the chain's n-th effect on or off\n"
                              "  P              pause the scene\n"
-                             "  R              tell what ran and why\n"
+                             "  R              tell what ran and why, and how the budget is kept\n"
                              "  F12            save a picture beside the others (postfx_0000.png ...)\n"
                              "  H              this help\n"
                              "  Esc            leave\n";
@@ -91,10 +92,14 @@ public:
             throw Error(Place{.file = output_}, "the window's picture is for display: name a .png");
         }
         Window window(facts.width, facts.height, "postfx", debug_build);
+        std::optional<MetBudget> met = meet_budget(chain, facts, chain_options_.curves());
         ChainRunner runner(std::move(chain), facts);
         SceneRenderer renderer(scene);
+        if (met) fmt::print("{}", met->text());
+        if (met) budget_.emplace(std::move(*met), runner);
         fmt::print("{}", help);
         loop(window, runner, renderer, bounds);
+        budget_.reset(); // while there is a context
         if (!output_.empty()) write_picture(runner, output_, false);
         tell_debug_messages();
         return Status::success;
@@ -125,7 +130,9 @@ private:
                 inputs.frame = frame;
                 const Textures textures = textures_of(renderer.render(
                     size.x, size.y, scene_time, runner.attachments(), CameraOverride{camera, {}}));
-                presenter.show(runner.run(textures, inputs, Timing::off), size);
+                const std::uint32_t picture = budget_ ? budget_->run(runner, textures, inputs)
+                                                      : runner.run(textures, inputs, Timing::off);
+                presenter.show(picture, size);
             }
             handle_keys(window, runner);
             window.set_title(fmt::format("postfx  {}  {:.0f} ms{}", scene.name, seconds * 1000,
@@ -149,7 +156,9 @@ private:
                 toggle(runner, static_cast<std::size_t>(key - GLFW_KEY_1));
             if (key == GLFW_KEY_P) paused_ = !paused_;
             if (key == GLFW_KEY_H) fmt::print("{}", help);
-            if (key == GLFW_KEY_R) fmt::print("{}", report_text(runner.executor().report()));
+            if (key == GLFW_KEY_R)
+                fmt::print("{}{}", report_text(runner.executor().report()),
+                           budget_ ? budget_->text(runner) : "");
             if (key == GLFW_KEY_ESCAPE) window.close();
             if (key == GLFW_KEY_F12) {
                 const std::filesystem::path file = next_screenshot();
@@ -159,11 +168,12 @@ private:
         }
     }
 
-    static void toggle(ChainRunner& runner, std::size_t index) {
+    void toggle(ChainRunner& runner, std::size_t index) {
         std::vector<ChainEntry>& entries = runner.chain().entries;
         if (index >= entries.size()) return;
         entries[index].enabled = !entries[index].enabled;
         runner.replan(runner.facts());
+        if (budget_) budget_->choose_again(runner);
         fmt::print("{} is {}\n", entries[index].name, entries[index].enabled ? "on" : "off");
     }
 
@@ -172,6 +182,7 @@ private:
     CatalogOptions catalog_options_;
     std::uint32_t frames_ = 0;
     std::string output_;
+    std::optional<RunningBudget> budget_;
     bool paused_ = false;
 };
 

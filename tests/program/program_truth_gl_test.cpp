@@ -52,10 +52,12 @@ TEST_CASE("what is asked for wrongly is refused") {
     check_refused(run_program(truth(folder, {"--set", "radius"})), "NAME=VALUE");
     check_refused(run_program(truth(folder, {"--set", "raduis=1"})), "radius");
     check_refused(run_program(truth(folder, {"--samples", "7"})), "even");
-    check_refused(run_program(truth(folder, {"--kind", "layer"})), "it has scene");
+    check_refused(run_program({"truth", "cornell", "vignette", "--kind", "layer"}), "it has scene");
     check_refused(run_program(truth(folder, {"-o", "a.gif"})), ".exr");
     check_refused(run_program({"truth", "cornell", "ssao: {radius: 1}", "--set", "radius=2"}), "not both");
-    check_refused(run_program({"truth", "cornell", "vignette"}), "ssao (scene)");
+    const Outcome unknown = run_program({"truth", "cornell", "tint", "--plugin-dir", POSTFX_FIXTURES});
+    CHECK(unknown.status == 2);
+    CHECK_THAT(unknown.err, Catch::Contains("tint has no truth") && Catch::Contains("ssao (scene)"));
 }
 
 TEST_CASE("an interrupted truth is continued to the picture that it would have been") {

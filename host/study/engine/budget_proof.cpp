@@ -1,0 +1,254 @@
+#include "budget_proof.hpp"
+
+#include "chain_truth.hpp"
+#include "interruption.hpp"
+#include "measure.hpp"
+#include "truths/drawn_scene.hpp"
+
+#include <image/metrics.hpp>
+
+#include <postfx/error.hpp>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace postfx::host::study {
+namespace {
+
+/// One level for all, as one would set it by hand: an effect that ends below has its most exact one that is on a curve.
+int uniform_level(const BudgetEntry& entry, const EffectInfo& effect, const std::string& level) {
+    if (entry.role != BudgetEntry::Role::free) return entry.level;
+    for (std::size_t i = 0; i < effect.levels.size(); ++i) {
+        if (effect.levels[i].id == level) return static_cast<int>(i);
+    }
+    return entry.options.back().level;
+}
+
+class Prover {
+public:
+    Prover(StudyScene& scene, const Chain& chain, const Curves& curves, const BudgetProofOptions& options)
+        : options_(options), chain_(chain),
+          facts_(facts_of(scene.scene, scene.bounds, options.size, 0, Output::display)),
+          chooser_(budget_question(chain, curves, Planner().plan(chain, facts_))),
+          renderer_(scene.scene, {.samples = 4}),
+          scene_frame_(renderer_.render(facts_.width, facts_.height, 0, SceneRenderer::attachment_names())) {
+        proof_.scene = scene.scene.name;
+        proof_.size = options.size;
+        proof_.rounds = options.rounds;
+        const gl::ClockCheck clock = gl::check_clock();
+        gpu_ = clock.timer_queries_honest;
+        proof_.clock = gpu_ ? clock.text : "CPU time of all threads; " + clock.text;
+        add_uniform_settings();
+    }
+
+    BudgetProof run(const ChainTruth& truth) {
+        proof_.truths = truth.truths;
+        proof_.truth_own_error = truth.own_error;
+        measure_settings("one level for all");
+        find_time_scale();
+        choose();
+        measure_settings("chosen and uniform levels");
+        for (ProvedSetting& setting : proof_.settings)
+            setting.error = relative_error(picture_of(setting), truth.picture).relative_rmse;
+        compare();
+        return std::move(proof_);
+    }
+
+private:
+    std::size_t add(const std::string& name, const std::vector<int>& levels) {
+        const auto same = std::find_if(proof_.settings.begin(), proof_.settings.end(),
+                                       [&](const ProvedSetting& known) { return known.levels == levels; });
+        if (same != proof_.settings.end()) return static_cast<std::size_t>(same - proof_.settings.begin());
+        BudgetQuestion question = chooser_.question();
+        for (std::size_t i = 0; i < levels.size(); ++i)
+            question.entries[i].level = levels[i];
+        proof_.settings.push_back({.name = name,
+                                   .levels = levels,
+                                   .predicted_ms = question.ms(),
+                                   .predicted_error = question.error(),
+                                   .ms = {},
+                                   .error = 0});
+        return proof_.settings.size() - 1;
+    }
+
+    void add_uniform_settings() {
+        for (const std::string& level : options_.uniform_levels) {
+            if (!any_effect_has(level))
+                throw Error(fmt::format("no effect of the chain has a level \"{}\"", level));
+            std::vector<int> levels;
+            for (std::size_t i = 0; i < chain_.entries.size(); ++i)
+                levels.push_back(
+                    uniform_level(chooser_.question().entries[i], *chain_.entries[i].effect, level));
+            add("all " + level, levels);
+        }
+        proof_.uniform_count = proof_.settings.size();
+    }
+
+    bool any_effect_has(const std::string& level) const {
+        return std::any_of(chain_.entries.begin(), chain_.entries.end(), [&](const ChainEntry& entry) {
+            const std::vector<LevelInfo>& levels = entry.effect->levels;
+            return std::any_of(levels.begin(), levels.end(),
+                               [&](const LevelInfo& info) { return info.id == level; });
+        });
+    }
+
+    void measure_settings(const std::string& what) {
+        std::vector<Case> cases;
+        for (const ProvedSetting& setting : proof_.settings) {
+            std::shared_ptr<ChainRunner> runner = runner_of(setting, Output::display);
+            cases.push_back({setting.name, [this, runner] { draw(*runner); }});
+        }
+        ProgressBar progress(proof_.scene + ", " + what, options_.rounds + warm_up_rounds);
+        measure(cases, options_.rounds, progress, [] { StopOnInterrupt::check(); });
+        for (std::size_t i = 0; i < cases.size(); ++i)
+            proof_.settings[i].ms = spread_of(cases[i].times(gpu_));
+    }
+
+    /// Curves are of other scenes: a running chain is corrected by what it measures, and so is this.
+    void find_time_scale() {
+        std::vector<double> ratios;
+        for (const ProvedSetting& setting : proof_.settings)
+            ratios.push_back(setting.ms.median / setting.predicted_ms);
+        proof_.time_scale = median(ratios);
+    }
+
+    void choose() {
+        const auto [first, last] =
+            std::minmax_element(proof_.settings.begin(), proof_.settings.end(),
+                                [](const auto& a, const auto& b) { return a.ms.median < b.ms.median; });
+        const double least = first->ms.median, most = last->ms.median;
+        for (int i = 0; i < options_.budgets; ++i) {
+            ProvedBudget budget;
+            budget.ms = least * std::pow(most / least, i / std::max(1.0, options_.budgets - 1.0));
+            const BudgetAnswer answer = chooser_.best({Budget::Of::ms, budget.ms}, proof_.time_scale);
+            budget.chosen = add(text_of(answer.choice.levels), answer.choice.levels);
+            proof_.budgets.push_back(budget);
+        }
+    }
+
+    void compare() {
+        for (ProvedBudget& budget : proof_.budgets) {
+            const double allowed = std::max(budget.ms, proof_.settings[budget.chosen].ms.median);
+            for (std::size_t i = 0; i < proof_.uniform_count; ++i) {
+                const ProvedSetting& setting = proof_.settings[i];
+                if (setting.ms.median > allowed) continue;
+                if (!budget.uniform || setting.error < proof_.settings[*budget.uniform].error)
+                    budget.uniform = i;
+            }
+        }
+    }
+
+    std::string text_of(const std::vector<int>& levels) const {
+        std::vector<std::string> parts;
+        for (std::size_t i = 0; i < levels.size(); ++i) {
+            if (chooser_.question().entries[i].role != BudgetEntry::Role::free) continue;
+            const ChainEntry& entry = chain_.entries[i];
+            parts.push_back(fmt::format("{} {}", entry.name,
+                                        entry.effect->levels[static_cast<std::size_t>(levels[i])].id));
+        }
+        return fmt::format("{}", fmt::join(parts, ", "));
+    }
+
+    std::shared_ptr<ChainRunner> runner_of(const ProvedSetting& setting, Output output) const {
+        Chain chain = chain_;
+        for (std::size_t i = 0; i < chain.entries.size(); ++i)
+            chain.entries[i].level = setting.levels[i];
+        Facts facts = facts_;
+        facts.output = output;
+        return std::make_shared<ChainRunner>(std::move(chain), facts);
+    }
+
+    void draw(ChainRunner& runner) const {
+        FrameInputs frame;
+        frame.camera = facts_.camera;
+        runner.run(textures_of(scene_frame_), frame, Timing::off);
+    }
+
+    Image64 picture_of(const ProvedSetting& setting) const {
+        StopOnInterrupt::check();
+        const std::shared_ptr<ChainRunner> runner = runner_of(setting, Output::linear);
+        draw(*runner);
+        return light_of(runner->executor().read_picture());
+    }
+
+    BudgetProofOptions options_;
+    Chain chain_;
+    Facts facts_;
+    LevelChooser chooser_;
+    SceneRenderer renderer_;
+    SceneFrame scene_frame_;
+    bool gpu_ = false;
+    BudgetProof proof_;
+};
+
+} // namespace
+
+double ProvedBudget::ratio(const std::vector<ProvedSetting>& settings) const {
+    return settings[chosen].error / settings[uniform.value()].error;
+}
+
+std::size_t BudgetProof::compared() const {
+    return static_cast<std::size_t>(
+        std::count_if(budgets.begin(), budgets.end(),
+                      [](const ProvedBudget& budget) { return budget.uniform.has_value(); }));
+}
+
+std::size_t BudgetProof::worse_than(double ratio) const {
+    return compared() - at_most(ratio);
+}
+
+std::size_t BudgetProof::at_most(double ratio) const {
+    return static_cast<std::size_t>(
+        std::count_if(budgets.begin(), budgets.end(), [&](const ProvedBudget& budget) {
+            return budget.uniform && budget.ratio(settings) <= ratio;
+        }));
+}
+
+BudgetProof prove_budgets(StudyScene& scene, const Chain& chain, const Curves& curves,
+                          const BudgetProofOptions& options, const std::filesystem::path& truth_store) {
+    Prover prover(scene, chain, curves, options);
+    const ChainTruth truth = chain_truth(
+        chain,
+        {.scene = scene.scene, .width = options.size.width, .height = options.size.height, .entry = {}},
+        truth_store);
+    return prover.run(truth);
+}
+
+nlohmann::ordered_json budget_proof_json(const BudgetProof& proof) {
+    nlohmann::ordered_json json = {{"scene", proof.scene},
+                                   {"size", fmt::format("{}x{}", proof.size.width, proof.size.height)},
+                                   {"clock", proof.clock},
+                                   {"rounds", proof.rounds},
+                                   {"time_scale", proof.time_scale},
+                                   {"truths", proof.truths},
+                                   {"truth_own_error", proof.truth_own_error},
+                                   {"settings", nlohmann::ordered_json::array()},
+                                   {"budgets", nlohmann::ordered_json::array()}};
+    for (const ProvedSetting& setting : proof.settings)
+        json["settings"].push_back({{"name", setting.name},
+                                    {"predicted_ms", setting.predicted_ms * proof.time_scale},
+                                    {"ms", setting.ms.median},
+                                    {"p10", setting.ms.p10},
+                                    {"p90", setting.ms.p90},
+                                    {"predicted_error", setting.predicted_error},
+                                    {"error", setting.error}});
+    for (const ProvedBudget& budget : proof.budgets) {
+        nlohmann::ordered_json item = {{"ms", budget.ms},
+                                       {"chosen", proof.settings[budget.chosen].name},
+                                       {"uniform", nullptr},
+                                       {"ratio", nullptr}};
+        if (budget.uniform) {
+            item["uniform"] = proof.settings[*budget.uniform].name;
+            item["ratio"] = budget.ratio(proof.settings);
+        }
+        json["budgets"].push_back(std::move(item));
+    }
+    return json;
+}
+
+} // namespace postfx::host::study

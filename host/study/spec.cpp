@@ -1,0 +1,99 @@
+#include "spec.hpp"
+
+#include <scene/yaml.hpp>
+
+#include <postfx/error.hpp>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <fstream>
+#include <iterator>
+
+namespace postfx::host::study {
+namespace {
+
+/// A value as a chain file writes it; the chain's own reader checks it.
+std::string value_text(const YamlValue& value) {
+    if (!value.is_list()) return value.text();
+    std::vector<std::string> items;
+    for (const YamlValue& item : value.list())
+        items.push_back(item.text());
+    return fmt::format("[{}]", fmt::join(items, ", "));
+}
+
+RadiusSpec read_radius(const YamlValue& value) {
+    const YamlMap map(value, "radius", {"parameter", "per_height", "at_most", "scene"});
+    RadiusSpec radius;
+    radius.parameter = map.at("parameter").text();
+    map.read("per_height", radius.per_height, {1e-9, 1e9});
+    map.read("at_most", radius.at_most, {1e-6, 10});
+    map.read("scene", radius.scene);
+    return radius;
+}
+
+EffectSpec read_effect(const YamlValue& value, const EffectSpec& standard, const std::string& what) {
+    const YamlMap map(value, what, {"scenes", "values", "judged_by", "radius"});
+    EffectSpec spec = standard;
+    if (const auto scenes = map.find("scenes")) {
+        spec.scenes.clear();
+        for (const YamlValue& scene : scenes->list())
+            spec.scenes.push_back(scene.text());
+    }
+    if (spec.scenes.empty()) value.fail("expected at least one scene");
+    if (const auto values = map.find("values")) {
+        std::vector<std::string> items;
+        for (const auto& [key, item] : values->entries())
+            items.push_back(fmt::format("{}: {}", key.text(), value_text(item)));
+        spec.values = fmt::format("{}", fmt::join(items, ", "));
+    }
+    if (const auto kind = map.find("judged_by")) spec.judged_by = kind->choice({"scene", "layer"});
+    if (const auto radius = map.find("radius")) spec.radius = read_radius(*radius);
+    return spec;
+}
+
+} // namespace
+
+Spec Spec::read(const std::filesystem::path& file) {
+    std::ifstream stream(file, std::ios::binary);
+    if (!stream) throw Error(Place{.file = file.string()}, "can't be read");
+    return parse({std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()}, file.string());
+}
+
+Spec Spec::parse(const std::string& yaml, const std::string& origin) {
+    const YamlMap map(parse_yaml(yaml, origin), "the study", {"default", "effects"});
+    Spec spec;
+    spec.default_ = read_effect(map.at("default"), {}, "default");
+    if (const auto effects = map.find("effects")) {
+        for (const auto& [key, value] : effects->entries())
+            spec.effects_.emplace(key.text(), read_effect(value, spec.default_, key.text()));
+    }
+    return spec;
+}
+
+const EffectSpec& Spec::of(const std::string& effect) const {
+    const auto found = effects_.find(effect);
+    return found == effects_.end() ? default_ : found->second;
+}
+
+ChainEntry entry_of(const Catalog& catalog, const std::string& effect, const EffectSpec& spec) {
+    Chain chain;
+    parse_chain_entry(fmt::format("{}: {{{}}}", effect, spec.values), "study of " + effect, catalog, chain);
+    return chain.entries.at(0);
+}
+
+std::optional<double> value_for_radius(const RadiusSpec& radius, const EffectInfo& effect, double pixels,
+                                       int picture_height) {
+    const auto index = effect.find_parameter(radius.parameter);
+    if (!index) {
+        throw Error(
+            Place{.effect = effect.id},
+            fmt::format("the study's radius is of \"{}\", which it has no parameter of", radius.parameter));
+    }
+    const ParameterInfo& parameter = effect.parameters[*index];
+    const double share = pixels / picture_height, value = share * radius.per_height;
+    if (share > radius.at_most || value < parameter.minimum || value > parameter.maximum) return std::nullopt;
+    return value;
+}
+
+} // namespace postfx::host::study

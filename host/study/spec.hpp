@@ -1,0 +1,50 @@
+// What of each effect is studied: the data of configs/study.yaml.
+#pragma once
+
+#include <postfx/chain.hpp>
+
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace postfx::host::study {
+
+/// What a radius in pixels is for a parameter: value = pixels / height of the picture * per_height.
+struct RadiusSpec {
+    std::string parameter;
+    double per_height = 1;
+    double at_most = 1; ///< share of the height that a radius can be, by the effect's other limits
+    std::string scene;  ///< that it holds for; "" = any
+};
+
+struct EffectSpec {
+    std::vector<std::string> scenes; ///< names; never empty
+    std::string values;              ///< as in a chain file, without braces: "radius: 1, mode: threshold"
+    std::string judged_by;           ///< kind of truth; "" = "scene" if there is one, else "layer"
+    std::optional<RadiusSpec> radius;
+};
+
+class Spec {
+public:
+    /// Throws Error with file:line:column.
+    static Spec read(const std::filesystem::path& file);
+    static Spec parse(const std::string& yaml, const std::string& origin);
+
+    /// What the file says of the effect, else its `default:`.
+    const EffectSpec& of(const std::string& effect) const;
+
+private:
+    EffectSpec default_;
+    std::map<std::string, EffectSpec> effects_;
+};
+
+/// The effect with the spec's values, at its default level. Throws Error for values that it does not have.
+ChainEntry entry_of(const Catalog& catalog, const std::string& effect, const EffectSpec& spec);
+
+/// The entry's value of the radius's parameter for so many pixels; nothing when it would be out of its range.
+std::optional<double> value_for_radius(const RadiusSpec& radius, const EffectInfo& effect, double pixels,
+                                       int picture_height);
+
+} // namespace postfx::host::study
