@@ -63,18 +63,19 @@ constexpr Line reference_first[] = {gaussian_32, gaussian_32, gaussian_16, gauss
 constexpr Line reference_lines[] = {whole, whole, whole, whole};
 
 struct Rung {
-    int block;                   ///< pixels per texel of the finest blurred image, on each axis
-    bool halves;                 ///< or else the lines' texels move apart, at full size
-    int linear_ups;              ///< steps up that interpolate linearly, from the picture on
-    std::span<const Line> first; ///< blurs at full size before the first halving
-    std::span<const Line> lines; ///< blurs between two halvings
+    int block;                    ///< pixels per texel of the finest blurred image, on each axis
+    bool halves;                  ///< or else the lines' texels move apart, at full size
+    int linear_ups;               ///< steps up that interpolate linearly, from the picture on
+    std::span<const Line> first;  ///< blurs at full size before the first halving
+    std::span<const Line> lines;  ///< blurs between two halvings
+    const char* line_format = ""; ///< rounding in half floats adds up over hundreds of lines
 };
 constexpr Rung rungs[] = {
     {4, true, 1, {}, {}},
     {2, true, 2, {}, {}},
     {1, true, 1, high_lines, high_lines},
     {1, true, 1, ultra_first, ultra_lines},
-    {1, false, 0, reference_first, reference_lines},
+    {1, false, 0, reference_first, reference_lines, "rgba32f"},
 };
 
 /// Variances of the passes' kernels on each axis, in squared texels of the finer of the two levels they join.
@@ -297,14 +298,14 @@ private:
         }
         const std::string name = std::to_string(index);
         const postfx::PlanImage across =
-            line(("across_" + name).c_str(), blur, {blur.step, 0}, own, wider, 0);
-        return line(("along_" + name).c_str(), blur, {0, blur.step}, own, across, own_share);
+            line(("across_" + name).c_str(), rung, blur, {blur.step, 0}, own, wider, 0);
+        return line(("along_" + name).c_str(), rung, blur, {0, blur.step}, own, across, own_share);
     }
     struct Step {
         int x, y;
     };
-    postfx::PlanImage line(const char* name, const Blur& blur, Step step, postfx::PlanImage own,
-                           postfx::PlanImage wider, double own_share) {
+    postfx::PlanImage line(const char* name, const Rung& rung, const Blur& blur, Step step,
+                           postfx::PlanImage own, postfx::PlanImage wider, double own_share) {
         return out_.pass(name, "bloom_line.glsl")
             .reads("own", own, "nearest")
             .reads("wider", wider)
@@ -314,6 +315,7 @@ private:
             .value("near", blur.line.near)
             .value("far", blur.line.far)
             .value("own_share", own_share)
+            .format(rung.line_format)
             .scale_of(own, 1.0);
     }
 

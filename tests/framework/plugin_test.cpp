@@ -109,6 +109,9 @@ TEST_CASE("the plugin path is searched in order, and a found effect shadows late
 
     const Catalog first = Catalog::discover({b});
     CHECK(first.find("tint")->module_path == b / "postfx_tint.so");
+
+    const Catalog twice = Catalog::discover({a, a / "."}); // a shadows b's as before, but not itself
+    CHECK(twice.notes() == found.notes());
 }
 
 TEST_CASE("unsafe entries of the plugin path are refused with a note") {

@@ -218,12 +218,14 @@ void Catalog::add(const postfx_module& declared, const fs::path& origin) {
 void Catalog::add(EffectPtr effect) {
     const auto at = std::lower_bound(effects_.begin(), effects_.end(), effect->id,
                                      [](const EffectPtr& e, const std::string& id) { return e->id < id; });
-    if (at != effects_.end() && (*at)->id == effect->id) {
-        notes_.push_back(fmt::format("{}: {} is shadowed by {}", effect->module_path.string(), effect->id,
-                                     (*at)->module_path.string()));
-    } else {
+    if (at == effects_.end() || (*at)->id != effect->id) {
         effects_.insert(at, std::move(effect));
+        return;
     }
+    std::error_code unknown;
+    if (fs::equivalent((*at)->module_path, effect->module_path, unknown)) return; // a directory named twice
+    notes_.push_back(fmt::format("{}: {} is shadowed by {}", effect->module_path.string(), effect->id,
+                                 (*at)->module_path.string()));
 }
 
 EffectPtr Catalog::find(std::string_view id) const {
