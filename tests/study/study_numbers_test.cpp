@@ -170,6 +170,16 @@ TEST_CASE("without a truth of pixels the error is the metric that stands for it,
     CHECK(effect.rungs[1].error == 0.02);
 }
 
+TEST_CASE("a curve is of the scenes' mean time, also where one is many times slower") {
+    EffectFindings effect = made_effect({made_rung("low", 1, 0.2)});
+    for (auto& cost : effect.rungs[0].scenes[1].costs)
+        cost.ms.median *= 99;
+    conclude(effect);
+    CHECK(effect.rungs[0].ms.median == Approx(50));
+    CHECK(effect.rungs[0].time.at(1) == Approx(50));
+    CHECK(effect.rungs[0].time.at(0.25) == Approx(12.5));
+}
+
 TEST_CASE("curves have what a budget reads: levels in order, with both numbers of time") {
     const EffectFindings effect = concluded({made_rung("classic", 0.5, 0.4), made_rung("high", 4, 0.05),
                                              made_rung("low", 1, 0.2), made_rung("slow", 5, 0.06)});
