@@ -199,3 +199,17 @@ TEST_CASE("budgets compares chosen levels with one level for all") {
                               "--levels", "fine"}),
                   "no effect of the chain has a level \"fine\"");
 }
+
+TEST_CASE("the curves that come along answer a budget for every effect of the default chain") {
+    const Folder folder;
+    const Outcome outcome =
+        folder.run({"explain", "still_life", "--chain", "default", "--budget", "error=10", "--json"});
+    INFO(outcome.err);
+    REQUIRE(outcome.status == 0);
+    const Json budget = Json::parse(outcome.out)["budget"];
+    CHECK(budget["fits"] == true);
+    for (const Json& effect : budget["effects"]) {
+        INFO(effect.dump());
+        CHECK(effect["role"] != "unknown");
+    }
+}
