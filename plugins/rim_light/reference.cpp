@@ -35,17 +35,12 @@ double fresnel(double cosine, double index) {
     return (crossed * crossed + parallel * parallel) / 2;
 }
 
-double schlick(double cosine, double index) {
-    const double head_on = std::pow((index - 1) / (index + 1), 2);
-    return head_on + (1 - head_on) * std::pow(1 - cosine, 5);
-}
-
 double share(const ReferenceInput& input, const Vector& normal, const Vector& eye) {
     const double level = input.value("quality"), width = input.value("width");
     if (level == 0) return std::clamp((width - dot(normal, eye)) / width, 0.0, 1.0);
     const double cosine = std::min(std::abs(dot(normal, eye)) / length(normal), 1.0);
     if (input.value("profile") == 0) return std::max(1 - cosine / width, 0.0);
-    return (level == 1 ? schlick : fresnel)(cosine, input.value("refractive_index"));
+    return fresnel(cosine, input.value("refractive_index"));
 }
 
 } // namespace

@@ -27,10 +27,9 @@ constexpr const char* attachments[] = {"normal", "depth"};
 
 constexpr postfx_level levels[] = {
     postfx::level("classic", "the ramp as (d + s) / s of the normal as it is; back faces are lit all over"),
-    postfx::level("low", "as medium, but fresnel by Schlick's approximation: off by up to 0.08"),
     postfx::level("medium", "exact up to rounding; higher levels would be the same shader"),
 };
-enum Level : int { classic, low, medium };
+enum Level : int { classic, medium };
 
 /// Narrower rims are as wide as this: no cosine in float32 tells them apart, and a reciprocal stays finite.
 constexpr double least_width = 1e-30;
@@ -50,8 +49,7 @@ void compose(const postfx::Request& in, postfx::Builder& out, postfx::PlanImage 
         .reads("normal", normal, "nearest")
         .value("light", strength * color[0], strength * color[1], strength * color[2])
         .value("slope", is_classic ? width : 1 / width)
-        .constant("RIM_LIGHT_PARALLEL", in.camera().orthographic ? 1 : 0)
-        .constant("RIM_LIGHT_SCHLICK", in.level() == low ? 1 : 0);
+        .constant("RIM_LIGHT_PARALLEL", in.camera().orthographic ? 1 : 0);
 }
 
 void plan(const postfx::Request& in, postfx::Builder& out) {

@@ -8,14 +8,6 @@ float rim_light_fresnel(float cosine, float index) {
     return 0.5 * crossed * crossed * (1.0 + parallel_over_crossed * parallel_over_crossed);
 }
 
-// The same (Schlick 1994).
-float rim_light_schlick(float cosine, float index) {
-    float head_on = (index - 1.0) / (index + 1.0);
-    float rest = 1.0 - cosine;
-    float rest_squared = rest * rest;
-    return mix(rest_squared * rest_squared * rest, 1.0, head_on * head_on);
-}
-
 // Share of the light by the angle between normal and eye. Both faces of a surface are alike, whichever way its normal
 // points: the cosine's sign is dropped. The ramp needs no division, so no width makes 0/0.
 vec3 rim_light(vec3 color, Pixel pixel, RimLightParams params, sampler2D normal) {
@@ -25,8 +17,6 @@ vec3 rim_light(vec3 color, Pixel pixel, RimLightParams params, sampler2D normal)
     float share;
     if (RIM_LIGHT_PROFILE == 0) {
         share = 1.0 - cosine * params.slope;
-    } else if (RIM_LIGHT_SCHLICK != 0) {
-        share = rim_light_schlick(cosine, params.refractive_index);
     } else {
         share = rim_light_fresnel(cosine, params.refractive_index);
     }
