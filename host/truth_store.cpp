@@ -17,7 +17,7 @@ namespace postfx::host {
 fs::path truth_store(const std::string& folder) {
     if (folder.empty() && cache_directory().empty())
         throw Error("there is no home for a cache; name a folder for the sums with --store");
-    const fs::path store = folder.empty() ? cache_directory() / "truths" : fs::path(folder);
+    fs::path store = folder.empty() ? cache_directory() / "truths" : fs::path(folder);
     std::error_code error;
     fs::create_directories(store, error);
     if (error) throw Error(Place{.file = store.string()}, fmt::format("can't be made: {}", error.message()));

@@ -28,7 +28,7 @@ double point_spread(const Method& method) {
         Image color(size, size, 3);
         std::fill_n(color.pixel(x, y), 3, 1.0f);
         const Image64 found = method.draw(entry, {.color = color});
-        std::vector<double> point(size * size);
+        std::vector<double> point(static_cast<std::size_t>(size) * size);
         point[static_cast<std::size_t>(y) * size + static_cast<std::size_t>(x)] = 1;
         std::vector<double> waves = cosine_waves(std::move(point), size, size);
         std::transform(waves.begin(), waves.end(), shares.begin(), waves.begin(), std::multiplies<>());

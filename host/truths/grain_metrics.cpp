@@ -63,7 +63,7 @@ struct AskedFilm {
         const double scale = deviation * deviation * u * (1 - u) / layer.pixel_variance(u);
         // A patch shows a covariance as often as two of its pixels are so far apart.
         const int reach = std::min(layer.reach(), patch / 2 - 1);
-        std::vector<double> covariances(patch * patch);
+        std::vector<double> covariances(static_cast<std::size_t>(patch) * patch);
         for (int j = -reach; j <= reach; ++j) {
             for (int i = -reach; i <= reach; ++i) {
                 const double seen = (1 - std::abs(i) / double(patch)) * (1 - std::abs(j) / double(patch));

@@ -59,9 +59,10 @@ BudgetEntry budget_entry(const ChainEntry& entry, const PlannedEffect& planned, 
     result.role = Role::pinned;
     const auto at = std::find_if(result.options.begin(), result.options.end(),
                                  [&](const LevelOption& option) { return option.level == entry.level; });
-    if (at == result.options.end())
-        return unknown(std::move(result),
-                       fmt::format("pinned to {}, which is not on its curve", result.level_id));
+    if (at == result.options.end()) {
+        std::string reason = fmt::format("pinned to {}, which is not on its curve", result.level_id);
+        return unknown(std::move(result), std::move(reason));
+    }
     const LevelOption pinned = *at;
     result.options = {pinned};
     return result;

@@ -173,7 +173,7 @@ std::optional<Choice> BudgetKeeper::raise(double seconds) {
         slowest = std::max(slowest, sample.value);
     const BudgetAnswer answer = reachable().best({Budget::Of::ms, headroom * budget_.limit}, slowest);
     if (!answer.fits || answer.choice.error > noticeably_better * question_.error()) return std::nullopt;
-    const std::optional<Choice> raised = change(seconds, towards(answer.choice, slowest));
+    std::optional<Choice> raised = change(seconds, towards(answer.choice, slowest));
     if (raised) last_raise_ = seconds;
     return raised;
 }

@@ -127,7 +127,7 @@ EffectFindings Study::run(const EffectInfo& effect) {
 void Study::find_errors(EffectFindings& findings, const std::vector<ChainEntry>& entries) {
     const std::string& id = entries.front().effect->id;
     const auto registered = truths_of(id);
-    if (registered.empty()) findings.notes.push_back("no truth of it is known: only times were measured");
+    if (registered.empty()) findings.notes.emplace_back("no truth of it is known: only times were measured");
     std::vector<Truths> truths;
     for (std::size_t s = 0; s < findings.scenes.size(); ++s) {
         SceneFindings& scene_findings = findings.scenes[s];
