@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 namespace postfx::host::study {
 namespace {
@@ -20,6 +21,19 @@ struct Sums {
     double slope() const { return (w * xy - x * y) / spread(); }
 };
 
+/// One point for all of the same x.
+Points means_by_place(const Points& points) {
+    std::map<double, std::pair<double, int>> sums;
+    for (const auto& [x, y] : points) {
+        sums[x].first += y;
+        ++sums[x].second;
+    }
+    Points means;
+    for (const auto& [x, sum] : sums)
+        means.emplace_back(x, sum.first / sum.second);
+    return means;
+}
+
 } // namespace
 
 std::optional<double> exponent_of(const Points& points) {
@@ -32,7 +46,8 @@ std::optional<double> exponent_of(const Points& points) {
     return sums.slope();
 }
 
-TimeCurve fit_time(const Points& points) {
+TimeCurve fit_time(const Points& measured) {
+    const Points points = means_by_place(measured);
     Sums sums;
     double largest = 0;
     for (const auto& [x, y] : points)

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <map>
 #include <numeric>
 
 namespace postfx::host::study {
@@ -53,15 +52,14 @@ std::optional<double> error_of(const EffectFindings& effect, const Rung& rung) {
     return sum / count;
 }
 
-/// Time at the first size and the curve through all sizes, of means over scenes: of what a scene makes many times
-/// slower the curve is to know too.
+/// Time at the first size, mean over scenes; the curve through all sizes.
 void conclude_times(Rung& rung) {
-    std::map<double, std::vector<double>> by_size; // megapixels, ms of scenes
+    Points points;
     rung.ms = {};
     int scenes = 0;
     for (const RungOnScene& scene : rung.scenes) {
         for (const Cost& cost : scene.costs)
-            by_size[cost.megapixels()].push_back(cost.ms.median);
+            points.emplace_back(cost.megapixels(), cost.ms.median);
         if (scene.costs.empty()) continue;
         const Spread& ms = scene.costs.front().ms;
         rung.ms.median += ms.median;
@@ -72,10 +70,6 @@ void conclude_times(Rung& rung) {
     }
     for (double* value : {&rung.ms.median, &rung.ms.p10, &rung.ms.p90})
         *value /= std::max(scenes, 1);
-    Points points;
-    for (const auto& [megapixels, ms] : by_size)
-        points.emplace_back(megapixels,
-                            std::accumulate(ms.begin(), ms.end(), 0.0) / static_cast<double>(ms.size()));
     rung.time = fit_time(points);
 }
 

@@ -95,8 +95,9 @@ constexpr double shortest_transition = 0.5;
 /// Edge of what is drawn or not as a whole, in tiles: these follow what reaches where, but are too small to draw
 /// singly.
 constexpr int tiles_of_a_mask = 4;
-/// Entries of the table of the discs' weights. Between them the sum is off by less than 2e-3.
-constexpr int disc_entries = 256;
+/// Entries of the table of the discs' weights. Between them the sum is off by at most 1.1 %, at 0.62 texels, where the
+/// first neighbours come in.
+constexpr int disc_entries = 1024;
 /// Of the layers. Every texel is read over a hundred times, and software rasterisers pay for each conversion from half
 /// floats as much as for the fetch.
 constexpr const char* gathered = "rgba32f";

@@ -231,17 +231,18 @@ private:
     }
 
     double weights_of_disc(double radius) const {
+        const int reach = static_cast<int>(radius) + 1;
         double sum = 0;
-        for (int y = -15; y <= 15; ++y) {
-            for (int x = -15; x <= 15; ++x)
+        for (int y = -reach; y <= reach; ++y) {
+            for (int x = -reach; x <= reach; ++x)
                 sum += visits(layers_.near_lattice, x, y) ? disc(radius, std::hypot(x, y)) : 0;
         }
         return sum;
     }
-    /// As the model has it: a straight line between each two of 256 radii.
+    /// As the model has it: a straight line between each two of 1024 radii.
     double table_of_discs(double radius) const {
-        const double spacing = (layers_.largest_radius + 0.1 - 0.5) / 255;
-        const double below = std::min(std::floor((radius - 0.5) / spacing), 254.0);
+        const double spacing = (layers_.largest_radius + 0.1 - 0.5) / 1023;
+        const double below = std::min(std::floor((radius - 0.5) / spacing), 1022.0);
         const double part = (radius - 0.5) / spacing - below;
         return (1 - part) * weights_of_disc(0.5 + below * spacing)
                + part * weights_of_disc(0.5 + (below + 1) * spacing);

@@ -58,6 +58,17 @@ TEST_CASE("the picture of the gathering levels is the float64 reference's") {
     }
 }
 
+TEST_CASE("the picture of the level reference is the float64 reference's for circles of 40 px too") {
+    const int width = 24, height = 420; // circles of up to a tenth of the height
+    for (const double side : {0.95, -0.95}) {
+        const Input input =
+            noisy(width, height, [&](int x, int) { return x < 12 ? 4.0 : distance_with(side); });
+        const Worst worst = against_reference(input, lens(40, height, perspective, reference_level));
+        INFO("side " << side << ", at " << worst.x << "," << worst.y);
+        CHECK(worst.absolute <= rounding);
+    }
+}
+
 TEST_CASE("the picture of the level classic is the float64 reference's but for a few roundings") {
     const int width = 61, height = 47;
     for (const Scene& distance : scenes) {

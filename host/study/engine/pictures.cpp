@@ -2,6 +2,7 @@
 
 #include "interruption.hpp"
 #include "truth_store.hpp"
+#include "truths/drawn_scene.hpp"
 
 #include <image/flip.hpp>
 #include <image/metrics.hpp>
@@ -16,13 +17,6 @@
 
 namespace postfx::host::study {
 namespace {
-
-Image64 first_three(const Image& image) {
-    Image64 light(image.width, image.height, 3);
-    for (std::size_t i = 0; i < image.pixel_count(); ++i)
-        std::copy_n(&image.values[image.channels * i], 3, &light.values[3 * i]);
-    return light;
-}
 
 Chain chain_of(const ChainEntry& entry) {
     Chain chain;
@@ -89,7 +83,7 @@ public:
         frame.frame = input.frame;
         ChainRunner runner(chain_of(entry), facts);
         runner.run(textures, frame, Timing::off);
-        return first_three(runner.executor().read_picture());
+        return light_of(runner.executor().read_picture());
     }
 
 private:
@@ -105,7 +99,7 @@ private:
 LevelPicture picture_of(const ChainEntry& entry, const View& view) {
     ChainRunner runner(chain_of(entry), view.facts());
     runner.run(view.textures(), view.frame(), Timing::off);
-    LevelPicture picture{.light = first_three(runner.executor().read_picture()), .skipped = ""};
+    LevelPicture picture{.light = light_of(runner.executor().read_picture()), .skipped = ""};
     const PlannedEffect effect = runner.executor().report().effects.front();
     if (effect.status == EffectStatus::skipped) picture.skipped = effect.reason;
     return picture;

@@ -33,10 +33,7 @@ View::View(StudyScene& scene, const EffectInfo& effect, Size size, int samples)
         given_ = gl::Texture(size.width, size.height, Format::rgba16f);
         given_.upload(convert<float>(tone_mapped(std::move(light))));
         textures_["color"] = given_.name();
-        const Image rounded = gl::read_texture(given_.name(), size.width, size.height, Format::rgba16f);
-        light = Image64(size.width, size.height, 3);
-        for (std::size_t i = 0; i < rounded.pixel_count(); ++i)
-            std::copy_n(&rounded.values[4 * i], 3, &light.values[3 * i]);
+        light = light_of(gl::read_texture(given_.name(), size.width, size.height, Format::rgba16f));
     }
     light_ = std::make_shared<const Image64>(std::move(light));
 }
