@@ -62,7 +62,8 @@ std::string findings_csv(const Findings& findings) {
         text += fmt::format(",relative_rmse_{0},own_error_{0},flip_{0}", kind);
     for (const std::string& size : conditions.time_sizes)
         text += fmt::format(",ms_{0},ms_p10_{0},ms_p90_{0},copies_{0},rounds_{0}", size);
-    text += ",passes,bytes_written_per_pixel,bytes_read_per_pixel,error,dominated_by,step_to_next,skipped\n";
+    text += ",passes,bytes_written_per_pixel,bytes_read_per_pixel,taps_per_pixel,error,dominated_by,step_to_"
+            "next,skipped\n";
     for (const EffectFindings& effect : findings.effects) {
         for (std::size_t s = 0; s < effect.scenes.size(); ++s) {
             for (const Rung& rung : effect.rungs) {
@@ -72,7 +73,7 @@ std::string findings_csv(const Findings& findings) {
                 for (const Cost& cost : rung.scenes[s].costs)
                     row.add(cost);
                 row.add(static_cast<double>(rung.passes)).add(rung.bytes_written).add(rung.bytes_read);
-                row.add(rung.error).add(rung.dominated_by).add(rung.step_to_next);
+                row.add(rung.scenes[s].taps).add(rung.error).add(rung.dominated_by).add(rung.step_to_next);
                 text += row.add(rung.scenes[s].skipped).line();
             }
         }

@@ -50,6 +50,9 @@ struct RungOnScene {
     std::map<std::string, PictureError> errors; ///< by the truth's kind
     std::vector<Cost> costs;                    ///< as Conditions::time_sizes
     std::string skipped;                        ///< why the effect did not run there; "" if it did
+    /// Texture reads per pixel of the picture that the effect adds to a chain, counted while it drew the first of
+    /// Conditions::time_sizes; none: they can't be counted.
+    std::optional<double> taps;
 };
 
 /// A level of an effect.
@@ -64,6 +67,7 @@ struct Rung {
 
     // Concluded from these:
     std::optional<double> error; ///< mean over scenes; none without a truth
+    std::optional<double> taps;  ///< as RungOnScene's, mean over scenes as times are; none where one lacks it
     Spread ms;                   ///< at the first of Conditions::time_sizes; mean over scenes
     TimeCurve time;
     std::string dominated_by; ///< level of a rung that is no worse in one and better in the other; "" = none

@@ -52,7 +52,11 @@ Json rung_on_scene_json(const RungOnScene& rung, const std::string& scene) {
                          {"ms", spread_json(cost.ms)},
                          {"copies", spread_json(cost.copies)}});
     }
-    return {{"scene", scene}, {"errors", errors}, {"costs", costs}, {"skipped", rung.skipped}};
+    return {{"scene", scene},
+            {"errors", errors},
+            {"costs", costs},
+            {"taps_per_pixel", number(rung.taps)},
+            {"skipped", rung.skipped}};
 }
 
 Json rung_json(const EffectFindings& effect, const Rung& rung) {
@@ -72,6 +76,7 @@ Json rung_json(const EffectFindings& effect, const Rung& rung) {
             {"passes", rung.passes},
             {"bytes_written_per_pixel", rung.bytes_written},
             {"bytes_read_per_pixel", rung.bytes_read},
+            {"taps_per_pixel", number(rung.taps)},
             {"metrics", metrics},
             {"scenes", scenes}};
 }

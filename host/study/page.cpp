@@ -59,8 +59,11 @@ them are within the bar. A <b>copy</b> is the time of one pass that copies the p
 the other. The line is the hull of the best. Times that differ by less than their noise or 2 %, and errors that
 differ by less than 2 % or are both below the truth's own, count as the same.</li>
 <li><b>Bytes</b> are those of all pixels that passes write, and of everything they read once, at most: passes
-may be left out by the frame. How often texels are fetched is not told: shaders loop as long as the frame says,
-and no counter that this program could trust counts it.</li>
+may be left out by the frame.</li>
+<li><b>Taps</b> are texture reads per pixel of the picture, counted by the shaders themselves while they drew each
+scene at {3}: loops that end early, passes of other sizes and those that the frame left out count as they went. A
+filtered read is one, and so is a gather of four texels. Like time, they are what an effect adds to a chain; mean
+over scenes.</li>
 </ul></section>
 )",
         escaped(conditions.picture_size), escaped(conditions.working_format), conditions.pixels_per_degree,

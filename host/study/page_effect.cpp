@@ -89,6 +89,11 @@ std::string metric_text(double value) {
     return std::isnan(value) ? "&ndash;" : fmt::format("{:.3g}", value);
 }
 
+/// Hundredths count: a pass of 1/64 of the pixels may read one each.
+std::string taps_text(const std::optional<double>& taps) {
+    return taps ? fmt::format("{:.{}f}", *taps, *taps < 99.995 ? 2 : 0) : "&ndash;";
+}
+
 /// Means over scenes.
 std::string rung_table(const EffectFindings& effect) {
     const bool scene = has_truth(effect, "scene"), layer = has_truth(effect, "layer");
@@ -100,7 +105,7 @@ std::string rung_table(const EffectFindings& effect) {
         heads.push_back(fmt::format("<abbr title=\"{}\">{}{}</abbr>", escaped(metric.help),
                                     escaped(metric.name), escaped(unit)));
     }
-    heads.insert(heads.end(), {"Step up, FLIP %", "Passes", "Bytes written / read"});
+    heads.insert(heads.end(), {"Step up, FLIP %", "Passes", "Taps", "Bytes written / read"});
     Table table(heads);
     for (const Rung& rung : effect.rungs) {
         std::string name = fmt::format("<b>{}</b>", escaped(rung.name()));
@@ -117,6 +122,7 @@ std::string rung_table(const EffectFindings& effect) {
             cells.push_back(metric_text(value));
         cells.push_back(rung.step_to_next > 0 ? share_text(rung.step_to_next) : "");
         cells.push_back(fmt::format("{}", rung.passes));
+        cells.push_back(taps_text(rung.taps));
         cells.push_back(fmt::format("{:.3g} / {:.3g}", rung.bytes_written, rung.bytes_read));
         table.add(cells, row_style(rung));
     }
@@ -181,7 +187,7 @@ std::string scene_details(const EffectFindings& effect) {
         const std::vector<Cost>& sizes = effect.rungs.front().scenes[s].costs;
         for (const Cost& cost : sizes)
             heads.push_back(fmt::format("ms at {}x{}", cost.width, cost.height));
-        heads.insert(heads.end(), {"Rounds", ""});
+        heads.insert(heads.end(), {"Rounds", "Taps", ""});
         Table table(heads);
         for (const Rung& rung : effect.rungs) {
             const RungOnScene& here = rung.scenes[s];
@@ -198,6 +204,7 @@ std::string scene_details(const EffectFindings& effect) {
                 rounds += fmt::format("{}{}", rounds.empty() ? "" : ", ", cost.ms.rounds);
             }
             cells.push_back(rounds);
+            cells.push_back(taps_text(here.taps));
             cells.push_back(here.skipped.empty() ? "" : "did not run: " + escaped(here.skipped));
             table.add(cells, row_style(rung));
         }

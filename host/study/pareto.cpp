@@ -87,6 +87,16 @@ void find_dominated(EffectFindings& effect) {
     }
 }
 
+std::optional<double> mean_taps(const Rung& rung) {
+    double sum = 0;
+    for (const RungOnScene& scene : rung.scenes) {
+        if (!scene.taps) return std::nullopt;
+        sum += *scene.taps;
+    }
+    if (rung.scenes.empty()) return std::nullopt;
+    return sum / static_cast<double>(rung.scenes.size());
+}
+
 void find_hull(EffectFindings& effect) {
     std::vector<std::size_t> indices;
     std::vector<std::pair<double, double>> points;
@@ -128,6 +138,7 @@ void conclude(EffectFindings& effect) {
     for (Rung& rung : effect.rungs) {
         conclude_times(rung);
         rung.error = error_of(effect, rung);
+        rung.taps = mean_taps(rung);
     }
     find_dominated(effect);
     find_hull(effect);

@@ -119,6 +119,22 @@ TEST_CASE("an effect that no truth and no entry of the study knows gets times on
     CHECK(Json::parse(file_bytes(folder / "study/curves.json"))["effects"].empty());
 }
 
+TEST_CASE("taps are what the effect's shaders read; where they can't count, a note says so") {
+    const TemporaryDirectory folder;
+    const Outcome outcome =
+        run_program(study(folder, {"tint", "blur", "sneaky_redefine", "--plugin-dir", POSTFX_FIXTURES}));
+    INFO(outcome.err);
+    REQUIRE(outcome.status == 0);
+    const Json effects = Json::parse(file_bytes(folder / "study/study.json"))["effects"];
+    CHECK(effects[0]["rungs"][0]["taps_per_pixel"] == 0.0); // in one pass with the encoding
+    // Two passes of five, at half the size and at full size, and one read of what came out.
+    CHECK(effects[1]["rungs"][0]["taps_per_pixel"] == 2 * 5 * 0.25 + 1);
+    CHECK(effects[1]["rungs"][1]["taps_per_pixel"] == 2 * 5 + 1.0);
+    CHECK(effects[2]["rungs"][0]["taps_per_pixel"].is_null());
+    CHECK_THAT(effects[2]["notes"].dump(), Catch::Contains("taps are not known: "));
+    CHECK_THAT(outcome.out, Catch::Contains("(taps are not known: "));
+}
+
 TEST_CASE("an effect that fails takes no other with it") {
     const TemporaryDirectory folder;
     const Outcome outcome =

@@ -7,7 +7,8 @@
 
 namespace postfx::testing {
 
-/// A rung that takes `ms` on every scene and is `error` from the truth there.
+/// A rung that takes `ms` on every scene and is `error` from the truth there. It reads 4 times per pixel on the first,
+/// 6.5 times on the second.
 inline host::study::Rung made_rung(const std::string& level, double ms, double error, int scenes = 2) {
     using namespace host::study;
     Rung rung;
@@ -24,6 +25,7 @@ inline host::study::Rung made_rung(const std::string& level, double ms, double e
                                       .ms = {here, 0.99 * here, 1.01 * here, 11},
                                       .copies = {here / 2, 0.99 * here / 2, 1.01 * here / 2, 11}});
         }
+        on_scene.taps = 4 + 2.5 * i;
         rung.scenes.push_back(on_scene);
     }
     return rung;

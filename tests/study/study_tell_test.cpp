@@ -128,6 +128,10 @@ TEST_CASE("every effect, scene and rung has a line of CSV with all its columns")
     CHECK_THAT(lines[1], Catch::EndsWith(",\"nothing, \"\"really\"\"\""));
     CHECK_THAT(lines[6], Catch::StartsWith("haze,cellar,high,0.02,0.001,,,,,16,"));
     CHECK_THAT(lines[3], Catch::Contains(",high,"));
+    CHECK_THAT(lines[0],
+               Catch::Contains(",passes,bytes_written_per_pixel,bytes_read_per_pixel,taps_per_pixel,error,"));
+    CHECK_THAT(lines[2], Catch::Contains(",1,8,0,4,0.02,"));
+    CHECK_THAT(lines[6], Catch::Contains(",1,8,0,6.5,0.02,"));
 
     const std::vector<std::string> growth = lines_of(growth_csv(made_findings(effect)));
     REQUIRE(growth.size() == 3);
@@ -154,6 +158,8 @@ TEST_CASE("JSON holds conditions, rungs, verdicts and what failed; what is not f
     CHECK(haze["rungs"][0]["scenes"][1]["errors"]["scene"]["flip"] == 0.04);
     CHECK(haze["scenes"][0]["truths"][0]["own_error"] == 0.001);
     CHECK(haze["growth"][0]["curves"][0]["time_exponent"] == 1.0);
+    CHECK(haze["rungs"][0]["taps_per_pixel"] == 5.25);
+    CHECK(haze["rungs"][0]["scenes"][1]["taps_per_pixel"] == 6.5);
 }
 
 TEST_CASE("logarithmic axes hold all values and name some of them") {
@@ -268,6 +274,7 @@ TEST_CASE("the page needs nothing else and escapes what it is told") {
           == count_of(page, "http://www.w3.org/2000/svg") + count_of(page, "http-equiv"));
     CHECK(page.find("src=\"data:image/png;base64,UE5H\"") != std::string::npos);
     CHECK(page.find("high is 4.0x closer to the truth than medium for 1.6x the time") != std::string::npos);
+    CHECK(count_of(page, "<td>5.25</td>") == 4); // taps of each rung
     CHECK(count_of(page, "<section") == count_of(page, "</section>"));
     CHECK(count_of(page, "<table") == count_of(page, "</table>"));
 }

@@ -45,6 +45,9 @@ struct Facts {
     /// Compile all values, sizes and the projection into the shaders: quicker passes, but whatever changes one of
     /// them makes a new program (tens of milliseconds). For pictures and for measuring, not while values are moved.
     bool fold = false;
+    /// Programs count their texture reads (PassReport::taps): the same picture, more slowly. A plan whose reads can't
+    /// all be counted is refused.
+    bool count_taps = false;
 };
 
 /// A texture that a pass reads or writes: an attachment of the scene, or a target of the plan.
@@ -70,6 +73,7 @@ struct ProgramSource {
     std::string text;
     std::vector<std::string> files; ///< by source-string number
     ProgramKind kind = ProgramKind::full_screen;
+    bool counts_taps = false;
     std::uint64_t key = 0; ///< hash of text
 };
 

@@ -3,6 +3,7 @@
 
 #include <postfx/plan.hpp>
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -22,6 +23,9 @@ struct PassReport {
     std::optional<bool> drawn;      ///< how they fell; absent: not known
     int tiles = 0;                  ///< that it may be drawn in; 0: it is not drawn in tiles
     std::optional<int> tiles_drawn; ///< of them; absent: not known
+    /// Calls that read a texture (textureGather() is one), of all pixels or threads in the last frame, and what
+    /// listing its tiles read; absent: its program does not count (Facts::count_taps).
+    std::optional<std::uint64_t> taps;
 };
 
 /// An image with pixels that are no numbers (NaN or infinite).
@@ -45,9 +49,9 @@ struct Report {
 Report describe(const Plan& plan);
 
 /// {"effects": [{"id", "name", "status", "moment", "kind", "reason"}], "passes": [{"name", "effects", "width",
-/// "height", "format", "reads", "condition", "drawn", "tiles", "tiles_drawn", "cpu_ms", "wall_ms", "gpu_ms"}],
-/// "clock", "texture_bytes", "warnings", "nonfinite": [{"name", "pixels", "x", "y", "made_here"}]}; what was not
-/// measured or watched is null.
+/// "height", "format", "reads", "condition", "drawn", "tiles", "tiles_drawn", "taps", "cpu_ms", "wall_ms",
+/// "gpu_ms"}], "clock", "texture_bytes", "warnings", "nonfinite": [{"name", "pixels", "x", "y", "made_here"}]}; what
+/// was not measured or watched is null.
 std::string report_json(const Report& report);
 /// The same for people.
 std::string report_text(const Report& report);

@@ -1,6 +1,7 @@
 #include <execute/frame_decisions.hpp>
 #include <execute/nonfinite_watch.hpp>
 #include <execute/program_cache.hpp>
+#include <execute/tap_counts.hpp>
 #include <execute/tile_passes.hpp>
 #include <gl/clock.hpp>
 #include <gl/context.hpp>
@@ -61,6 +62,7 @@ struct Executor::State {
         std::vector<ReadyPass> passes;
         std::optional<FrameDecisions> decisions; ///< if the plan has any
         std::optional<TilePasses> tiles;         ///< likewise
+        std::optional<TapCounts> taps;           ///< if programs count them
     };
 
     explicit State(std::filesystem::path cache)
@@ -88,6 +90,7 @@ struct Executor::State {
         }
         glUseProgram(ready_pass.program);
         if (ready_pass.block) glBindBufferBase(GL_UNIFORM_BUFFER, 1, ready_pass.block.name());
+        if (current.taps) current.taps->bind(index);
         for (std::size_t unit = 0; unit < pass.inputs.size(); ++unit) {
             const PassInput& input = pass.inputs[unit];
             glBindTextureUnit(static_cast<GLuint>(unit), texture(current, input.image, attachments));
@@ -152,6 +155,19 @@ TexturePtr reuse_or_make(std::vector<TexturePtr>& old, const Target& target) {
                               : std::make_shared<gl::Texture>(target.width, target.height, target.format);
 }
 
+/// What the last frame read: its programs, and for tiles the mask, each tile of which is looked at once.
+void tell_taps(const std::vector<std::uint64_t>& taps, Report& report) {
+    for (std::size_t i = 0; i < taps.size(); ++i) {
+        PassReport& pass = report.passes[i];
+        pass.taps = taps[i] + (pass.drawn.value_or(true) ? static_cast<std::uint64_t>(pass.tiles) : 0);
+    }
+}
+
+bool counts_taps(const Plan& plan) {
+    return std::any_of(plan.passes.begin(), plan.passes.end(),
+                       [](const Pass& pass) { return pass.program->counts_taps; });
+}
+
 bool has_tiles(const Plan& plan) {
     return std::any_of(plan.passes.begin(), plan.passes.end(),
                        [](const Pass& pass) { return pass.where.kind != ImageRef::Kind::none; });
@@ -211,6 +227,7 @@ void Executor::prepare(const Plan& plan) {
     }
     if (!plan.decisions.empty()) ready.decisions.emplace(plan);
     if (has_tiles(plan)) ready.tiles.emplace(plan);
+    if (counts_taps(plan)) ready.taps.emplace(plan.passes.size());
     ready.plan = plan;
     state.current = std::move(ready);
     state.profile.assign(plan.passes.size(), {});
@@ -243,6 +260,7 @@ std::uint32_t Executor::run(const FrameInputs& inputs, Timing timing, Watch watc
     glBindVertexArray(state.vertex_array.name());
     if (state.current.decisions) state.current.decisions->begin_frame();
     if (state.current.tiles) state.current.tiles->begin_frame();
+    if (state.current.taps) state.current.taps->begin_frame();
 
     if (watch == Watch::nonfinite) {
         state.watch->begin_frame();
@@ -293,6 +311,7 @@ Report Executor::report() const {
         for (std::size_t i = 0; i < drawn.size(); ++i)
             report.passes[i].tiles_drawn = drawn[i];
     }
+    if (state.current.taps && state.picture) tell_taps(state.current.taps->read(), report);
     if (state.last_watch == Watch::nonfinite) report.nonfinite = state.watch->findings(state.current.plan);
     if (state.last_timing == Timing::profile) {
         for (std::size_t i = 0; i < report.passes.size(); ++i) {

@@ -1,4 +1,5 @@
 #include <plan/assemble.hpp>
+#include <plan/taps.hpp>
 
 #include <postfx_shader_library.h>
 
@@ -145,8 +146,10 @@ class Assembly {
 public:
     Assembly(ProgramKind kind, const Numbers& numbers) {
         program_.kind = kind;
+        program_.counts_taps = numbers.count_taps;
         program_.text =
             fmt::format("#version 450 core // {}\n", kind_name(kind)); // in the text, so in its key
+        if (program_.counts_taps) generated(tap_counter);
         library("prelude.glsl", Place{});
         generated(frame_declaration(numbers));
     }
@@ -180,6 +183,7 @@ public:
     }
 
     ProgramSource finish() {
+        if (program_.counts_taps) generated(tap_counting_main);
         program_.key = std::hash<std::string>{}(program_.text);
         return std::move(program_);
     }
@@ -194,6 +198,11 @@ private:
     void text(const std::string& name, std::string_view glsl, const EffectInfo* effect) {
         if (!included_.insert({effect ? effect->module_path.string() : "", name}).second) return;
         const std::size_t file = begin_file(name);
+        std::string counted;
+        if (program_.counts_taps) {
+            counted = with_taps_counted(name, glsl, effect);
+            glsl = counted;
+        }
         int line = 1;
         for (std::size_t at = 0; at < glsl.size(); ++line) {
             const std::size_t end = std::min(glsl.find('\n', at), glsl.size());
@@ -207,6 +216,16 @@ private:
                 program_.text.append(row).push_back('\n');
             }
         }
+    }
+
+    static std::string with_taps_counted(const std::string& name, std::string_view glsl,
+                                         const EffectInfo* effect) {
+        CountedText counted = count_taps(glsl);
+        if (!counted.why_not.empty()) {
+            throw Error(Place{.file = name, .effect = effect ? effect->id : ""},
+                        fmt::format("its texture reads can't be counted: {}", counted.why_not));
+        }
+        return std::move(counted.glsl);
     }
 
     void include(std::string_view row, const Place& place, const EffectInfo* effect) {
@@ -436,7 +455,8 @@ ProgramSource assemble_census(bool depth, const Numbers& numbers) {
 }
 
 std::string program_key(const std::vector<Stage>& stages, std::string_view form, const Numbers& numbers) {
-    std::string key(form);
+    std::string key(numbers.count_taps ? "taps " : "");
+    key += form;
     for (const Stage& stage : stages) {
         key += fmt::format("|{}:{}", static_cast<const void*>(stage.source), stage.samplers.size());
         for (const BlockMember& member : stage.members)

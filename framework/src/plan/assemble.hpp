@@ -45,10 +45,11 @@ std::string why_not_together(const Stage& a, const Stage& b);
 
 enum class Encoding { none, srgb, srgb_dithered };
 
-/// How a pass's program gets its numbers: from uniform blocks, or compiled in (Facts::fold).
+/// How a pass's program gets its numbers, from uniform blocks or compiled in (Facts::fold), and gives some: does it
+/// count its texture reads (Facts::count_taps)?
 struct Numbers {
     int width = 0, height = 0; ///< of the pass's target
-    bool folded = false;
+    bool folded = false, count_taps = false;
     FrameBlock frame; ///< when folded: what of it does not change from frame to frame is compiled in
 };
 

@@ -119,7 +119,9 @@ private:
         return {ImageRef::Kind::attachment, static_cast<int>(index)};
     }
 
-    Numbers numbers_of(int width, int height) const { return {width, height, facts_.fold, frame_}; }
+    Numbers numbers_of(int width, int height) const {
+        return {width, height, facts_.fold, facts_.count_taps, frame_};
+    }
 
     ImageRef new_target(int width, int height, Format format) {
         plan_.targets.push_back({width, height, format});

@@ -89,6 +89,12 @@ std::string tile_text(const PassReport& pass) {
     return fmt::format("  in {} of {} tiles", *pass.tiles_drawn, pass.tiles);
 }
 
+std::string taps_text(const PassReport& pass) {
+    if (!pass.taps) return "";
+    return fmt::format("  {:.2f} taps per pixel",
+                       static_cast<double>(*pass.taps) / (static_cast<double>(pass.width) * pass.height));
+}
+
 /// What an effect cost: its own passes, and those that it shares with others.
 std::string cost_text(const Report& report, const PlannedEffect& effect) {
     double own = 0, shared = 0;
@@ -163,6 +169,7 @@ std::string report_json(const Report& report) {
                                   {"drawn", optional_json(pass.drawn)},
                                   {"tiles", pass.tiles},
                                   {"tiles_drawn", optional_json(pass.tiles_drawn)},
+                                  {"taps", optional_json(pass.taps)},
                                   {"cpu_ms", optional_json(pass.cpu_ms)},
                                   {"wall_ms", optional_json(pass.wall_ms)},
                                   {"gpu_ms", optional_json(pass.gpu_ms)}});
@@ -202,9 +209,10 @@ std::string report_text(const Report& report) {
     text += "passes\n";
     for (const PassReport& pass : report.passes) {
         if (!pass.drawn.value_or(true)) continue;
-        text += fmt::format("  {:<{}}  {:>4}x{:<4} {:<10}{}{}{}{}\n", pass.name, pass_width, pass.width,
-                            pass.height, pass.format, time_text(pass), reads_text(pass), tile_text(pass),
-                            pass.condition.empty() || pass.drawn ? "" : "  " + pass.condition);
+        text +=
+            fmt::format("  {:<{}}  {:>4}x{:<4} {:<10}{}{}{}{}{}\n", pass.name, pass_width, pass.width,
+                        pass.height, pass.format, time_text(pass), taps_text(pass), reads_text(pass),
+                        tile_text(pass), pass.condition.empty() || pass.drawn ? "" : "  " + pass.condition);
     }
     text += fmt::format("textures  {:.1f} MiB\nclock     {}\n",
                         static_cast<double>(report.texture_bytes) / (1024 * 1024), report.clock);

@@ -1,10 +1,10 @@
 #include <plugin/pointwise.hpp>
+#include <plugin/uncomment.hpp>
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <optional>
 
 namespace postfx {
@@ -40,101 +40,12 @@ constexpr std::array forbidden_words = {"uniform",
 constexpr std::array forbidden_prefixes = {"gl_",    "image",    "uimage",  "iimage",
                                            "atomic", "isampler", "usampler"};
 
-bool is_word_character(char c) {
-    return std::isalnum(static_cast<unsigned char>(c)) || c == '_';
-}
-
 bool is_forbidden(std::string_view word) {
     return std::find(forbidden_words.begin(), forbidden_words.end(), word) != forbidden_words.end()
            || std::any_of(forbidden_prefixes.begin(), forbidden_prefixes.end(),
                           [&](std::string_view prefix) { return word.starts_with(prefix); })
            || (word.starts_with("sampler") && word != "sampler2D");
 }
-
-bool is_blank(char c) {
-    return c == ' ' || c == '\t' || c == '\r';
-}
-
-std::string_view row_at(std::string_view text, std::size_t at) {
-    return text.substr(at, std::min(text.find('\n', at), text.size()) - at);
-}
-
-std::string_view trimmed(std::string_view row) {
-    while (!row.empty() && is_blank(row.front()))
-        row.remove_prefix(1);
-    while (!row.empty() && is_blank(row.back()))
-        row.remove_suffix(1);
-    return row;
-}
-
-/// Takes comments out of GLSL, line by line as they were. What a compiler might take for a comment where this
-/// does not, or the other way round, is refused: continued lines, lone carriage returns, and #include lines
-/// (which are replaced as a whole before the compiler sees the text) that begin or end a comment.
-class Uncommenter {
-public:
-    explicit Uncommenter(std::string_view text) : text_(text) {}
-
-    /// Why not; nothing if `code()` can be believed.
-    std::optional<std::string> run() {
-        for (at_ = 0; at_ < text_.size(); ++at_) {
-            const char c = text_[at_], next = at_ + 1 < text_.size() ? text_[at_ + 1] : '\0';
-            if (c == '\\') return refuse("has a line continuation, which could hide a directive");
-            if (c == '\r' && next != '\n') return refuse("has a carriage return inside a line");
-            if (at_ == 0 || text_[at_ - 1] == '\n') {
-                if (auto why = check_include(trimmed(row_at(text_, at_)))) return why;
-            }
-            step(c, next);
-        }
-        if (state_ == State::block) {
-            line_ = opened_;
-            return refuse("has a comment without an end");
-        }
-        return std::nullopt;
-    }
-    const std::string& code() const { return code_; }
-
-private:
-    enum class State { code, line, block };
-
-    void step(char c, char next) {
-        if (c == '\n') {
-            ++line_;
-            if (state_ == State::line) state_ = State::code;
-            code_ += c;
-        } else if (state_ == State::code && c == '/' && (next == '/' || next == '*')) {
-            state_ = next == '/' ? State::line : State::block;
-            opened_ = line_;
-            blank_two();
-        } else if (state_ == State::block && c == '*' && next == '/') {
-            state_ = State::code;
-            blank_two();
-        } else {
-            code_ += state_ == State::code ? c : ' ';
-        }
-    }
-
-    void blank_two() {
-        code_ += "  ";
-        ++at_;
-    }
-
-    std::optional<std::string> check_include(std::string_view row) const {
-        if (!row.starts_with("#include")) return std::nullopt;
-        if (state_ == State::block) return refuse("has an #include in a comment");
-        if (row.find("//") != std::string::npos || row.find("/*") != std::string::npos) {
-            return refuse("has a comment behind an #include");
-        }
-        return std::nullopt;
-    }
-
-    std::string refuse(std::string_view why) const { return fmt::format("line {}: {}", line_, why); }
-
-    std::string_view text_;
-    std::string code_;
-    std::size_t at_ = 0;
-    State state_ = State::code;
-    int line_ = 1, opened_ = 1;
-};
 
 /// Reads GLSL without comments, word by word.
 class Scan {
@@ -249,9 +160,9 @@ private:
 } // namespace
 
 std::string why_not_pointwise(std::string_view glsl) {
-    Uncommenter uncommenter(glsl);
-    if (const auto why = uncommenter.run()) return *why;
-    return Scan(uncommenter.code()).run().value_or("");
+    const Uncommented uncommented = uncomment(glsl);
+    if (!uncommented.why_not.empty()) return uncommented.why_not;
+    return Scan(uncommented.code).run().value_or("");
 }
 
 } // namespace postfx

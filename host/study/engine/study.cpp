@@ -52,6 +52,18 @@ std::string judge_of(const std::vector<SceneFindings>& scenes, const std::string
     return "";
 }
 
+/// None, and a note why, if the shaders can't count them.
+std::optional<double> counted_taps(const View& view, const ChainEntry& entry,
+                                   std::vector<std::string>& notes) {
+    try {
+        return taps_of(view, entry);
+    } catch (const Error& error) {
+        const std::string note = fmt::format("taps are not known: {}", error.what());
+        if (std::find(notes.begin(), notes.end(), note) == notes.end()) notes.push_back(note);
+        return std::nullopt;
+    }
+}
+
 std::string error_text(const EffectFindings& findings) {
     if (!findings.judged_by.empty()) {
         return findings.judged_by == "scene" ? "relative RMSE from the truth of the scene"
@@ -184,8 +196,12 @@ void Study::find_times(EffectFindings& findings, const EffectInfo& effect,
                                             size.width, size.height));
             base_.emplace_back(1e-6 * size.width * size.height, timed.base_ms.median);
             for (std::size_t i = 0; i < entries.size(); ++i) {
-                findings.rungs[i].scenes[s].costs.push_back(timed.costs[i]);
-                if (s > 0 || &size != &options_.time_sizes.front()) continue;
+                RungOnScene& rung = findings.rungs[i].scenes[s];
+                rung.costs.push_back(timed.costs[i]);
+                if (&size != &options_.time_sizes.front()) continue;
+                StopOnInterrupt::check();
+                rung.taps = counted_taps(view, entries[i], findings.notes);
+                if (s > 0) continue;
                 const Work work = work_of(view, entries[i]);
                 findings.rungs[i].passes = work.passes;
                 findings.rungs[i].bytes_written = work.bytes_written;

@@ -146,6 +146,18 @@ double read_by(const Plan& plan, const View& view) {
     return bytes;
 }
 
+/// Of a whole chain, all pixels of all its passes.
+double all_taps(const View& view, const Chain& chain) {
+    Facts facts = displayed(view);
+    facts.count_taps = true;
+    ChainRunner runner(chain, facts);
+    runner.run(view.textures(), view.frame(), Timing::off);
+    double taps = 0;
+    for (const PassReport& pass : runner.executor().report().passes)
+        taps += static_cast<double>(pass.taps.value());
+    return taps;
+}
+
 } // namespace
 
 TimedEntries measure_entries(const View& view, const std::vector<ChainEntry>& entries,
@@ -161,6 +173,11 @@ Work work_of(const View& view, const ChainEntry& entry) {
     return {static_cast<int>(with.passes.size()) - static_cast<int>(without.passes.size()),
             (written_by(with) - written_by(without)) / pixels,
             (read_by(with, view) - read_by(without, view)) / pixels};
+}
+
+double taps_of(const View& view, const ChainEntry& entry) {
+    const double pixels = static_cast<double>(view.size().width) * view.size().height;
+    return (all_taps(view, chain_of({entry})) - all_taps(view, chain_of({}))) / pixels;
 }
 
 } // namespace postfx::host::study

@@ -34,4 +34,8 @@ struct Work {
 };
 Work work_of(const View& view, const ChainEntry& entry);
 
+/// Texture reads per pixel of the picture that an entry adds to a chain when it draws the view. Throws Error if its
+/// shaders can't count them.
+double taps_of(const View& view, const ChainEntry& entry);
+
 } // namespace postfx::host::study
