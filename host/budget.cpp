@@ -1,15 +1,32 @@
 #include "budget.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
+#include <utility>
+
 namespace postfx::host {
+namespace {
+
+std::vector<std::string> names_of(const LevelTrial& trial) {
+    std::vector<std::string> names;
+    for (const auto& [name, distances] : trial.distances)
+        names.push_back(name);
+    return names;
+}
+
+} // namespace
 
 std::string MetBudget::text() const {
     std::string text = budget_text(budget, question, answer);
     text += fmt::format("  curves: {} ({}; clock: {})\n", curves.file.string(), curves.curves.device,
                         curves.curves.clock);
     if (!curves.note.empty()) text += fmt::format("  {}\n", curves.note);
+    text += trial.distances.empty()
+                ? "  errors: those of the curves, of other scenes\n"
+                : fmt::format("  errors: tried in this scene: {}\n", fmt::join(names_of(trial), ", "));
     return text;
 }
 
@@ -20,16 +37,24 @@ std::string MetBudget::json() const {
                       {"driver", curves.curves.driver},
                       {"clock", curves.curves.clock},
                       {"note", curves.note}};
+    json["tried"] = names_of(trial);
     return json.dump(2);
 }
 
-std::optional<MetBudget> meet_budget(Chain& chain, const Facts& facts, const std::filesystem::path& curves) {
+std::optional<MetBudget> meet_budget(Chain& chain, const Facts& facts, const BudgetSource& source,
+                                     const TrialInputs& inputs) {
     if (!chain.budget) return std::nullopt;
-    FoundCurves found = find_curves(curves);
+    FoundCurves found = find_curves(source.curves);
     BudgetQuestion question = budget_question(chain, found.curves, Planner().plan(chain, facts));
+    LevelTrial trial;
+    if (!source.by_curves) {
+        trial = try_levels(chain, question, *chain.budget, facts, inputs);
+        question = in_scene(std::move(question), trial);
+    }
     BudgetAnswer answer = LevelChooser(question).best(*chain.budget);
     apply(answer.choice, chain);
-    return MetBudget{*chain.budget, std::move(found), std::move(question), std::move(answer)};
+    return MetBudget{*chain.budget, std::move(found), std::move(trial), std::move(question),
+                     std::move(answer)};
 }
 
 ChainTimer::ChainTimer() {
@@ -68,25 +93,55 @@ RunningBudget::RunningBudget(MetBudget met, const ChainRunner& runner)
 }
 
 BudgetQuestion RunningBudget::question_of(const ChainRunner& runner) const {
-    return budget_question(runner.chain(), met_.curves.curves, runner.plan());
+    return in_scene(budget_question(runner.chain(), met_.curves.curves, runner.plan()), met_.trial);
+}
+
+std::vector<std::string> RunningBudget::attachments(const ChainRunner& runner) const {
+    std::vector<std::string> all = runner.attachments();
+    if (!next_change_) return all;
+    Chain chain = runner.chain();
+    apply(next_change_->choice, chain);
+    for (const std::string& name : Planner().plan(chain, runner.facts()).attachments) {
+        if (std::find(all.begin(), all.end(), name) == all.end()) all.push_back(name);
+    }
+    return all;
 }
 
 std::uint32_t RunningBudget::run(ChainRunner& runner, const Textures& textures, const FrameInputs& frame) {
+    if (next_change_) return change_levels(runner, textures, frame);
     keeper_.follow(question_of(runner));
     timer_.begin();
-    const std::uint32_t picture = runner.run(textures, frame, Timing::off);
+    const std::uint32_t drawn = runner.run(textures, frame, Timing::off);
     timer_.end();
-    const std::optional<double> ms = timer_.ms();
-    if (!ms) return picture;
-    if (const auto choice = keeper_.frame(gl::HostTime::now().wall_ms / 1000, *ms))
-        apply(*choice, runner.chain());
-    return picture;
+    if (const std::optional<double> ms = timer_.ms())
+        next_change_ = keeper_.frame(gl::HostTime::now().wall_ms / 1000, *ms);
+    return cross_fade_.show(drawn, runner.facts().width, runner.facts().height);
+}
+
+std::uint32_t RunningBudget::change_levels(ChainRunner& runner, const Textures& textures,
+                                           const FrameInputs& frame) {
+    const LevelChange change = *std::exchange(next_change_, std::nullopt);
+    const int width = runner.facts().width, height = runner.facts().height;
+    if (change.frames > 1) {
+        const std::uint32_t before = runner.run(textures, frame, Timing::off);
+        cross_fade_.begin(cross_fade_.show(before, width, height), width, height, change.frames);
+    }
+    apply(change.choice, runner.chain());
+    runner.replan(runner.facts());
+    return cross_fade_.show(runner.run(textures, frame, Timing::off), width, height);
 }
 
 void RunningBudget::choose_again(ChainRunner& runner) {
+    next_change_.reset();
     const LevelChooser chooser(question_of(runner));
     apply(chooser.best(met_.budget, keeper_.correction()).choice, runner.chain());
     runner.replan(runner.facts());
+}
+
+void RunningBudget::try_again(ChainRunner& runner, const TrialInputs& inputs) {
+    const BudgetQuestion by_curves = budget_question(runner.chain(), met_.curves.curves, runner.plan());
+    met_.trial = try_levels(runner.chain(), by_curves, met_.budget, runner.facts(), inputs);
+    choose_again(runner);
 }
 
 std::string RunningBudget::text(const ChainRunner& runner) const {

@@ -43,11 +43,15 @@ void ChainOptions::declare(CLI::App& app) {
         ->type_name("KIND=LIMIT")
         ->default_str("");
     app.add_option(
-           "--curves", curves_,
+           "--curves", budget_source_.curves,
            "What levels cost, for a budget; without, what `postfx calibrate` measured on this device, or "
            "what comes along")
         ->type_name("FILE.json")
         ->default_str("");
+    app.add_flag(
+        "--by-curves", budget_source_.by_curves,
+        "Meet a budget by the curves alone, which are means over other scenes, without drawing levels to "
+        "see what they do in this one");
     app.footer(default_chain_.empty() ? ""
                                       : "Without --chain and --effect the chain is " + default_chain_ + ".");
 }

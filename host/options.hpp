@@ -22,8 +22,14 @@ private:
     std::vector<std::string> plugin_directories_;
 };
 
-/// --chain and --effect: which effects are used; --run-all: whether called for or not; --budget and --curves: at which
-/// levels.
+/// What is known of levels when a budget is met.
+struct BudgetSource {
+    std::string curves;     ///< file; "" = those of the current OpenGL context's device
+    bool by_curves = false; ///< errors are those of the curves: levels are not tried in the scene
+};
+
+/// --chain and --effect: which effects are used; --run-all: whether called for or not; --budget, --curves and
+/// --by-curves: at which levels.
 class ChainOptions {
 public:
     /// `default_chain` is used when neither option is given.
@@ -32,8 +38,8 @@ public:
     /// Was any of the two given?
     bool given() const { return !chain_.empty() || !effects_.empty(); }
     bool run_all() const { return run_all_; }
-    /// The file of --curves; "" = those of the device.
-    const std::string& curves() const { return curves_; }
+    /// By what a budget is to be met.
+    const BudgetSource& budget_source() const { return budget_source_; }
     /// The chain file's effects, then those of --effect in order.
     Chain read(const Catalog& catalog) const;
 
@@ -41,7 +47,8 @@ private:
     std::string default_chain_;
     std::string chain_;
     std::vector<std::string> effects_;
-    std::string budget_, curves_;
+    std::string budget_;
+    BudgetSource budget_source_;
     bool run_all_ = false;
 };
 

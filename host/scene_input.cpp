@@ -38,6 +38,17 @@ void look(Facts& facts, ViewBounds& bounds, const Camera& camera, double time) {
     facts.scene = bounds.at(time, camera, facts.width, facts.height);
 }
 
+TrialInputs trial_inputs(SceneRenderer& renderer, const Facts& facts, double time) {
+    TrialInputs inputs;
+    inputs.frame.camera = facts.camera;
+    inputs.frame.time = time;
+    inputs.draw_scene = [&renderer, facts, time](const std::vector<std::string>& attachments) {
+        return textures_of(
+            renderer.render(facts.width, facts.height, time, attachments, CameraOverride{facts.camera, {}}));
+    };
+    return inputs;
+}
+
 Textures textures_of(const SceneFrame& frame) {
     Textures textures;
     for (const SceneAttachment& attachment : frame.attachments)

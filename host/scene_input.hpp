@@ -1,6 +1,7 @@
 // SCENE on the command line, with what goes along with it.
 #pragma once
 
+#include "level_trial.hpp"
 #include "options.hpp"
 #include "picture.hpp"
 
@@ -40,6 +41,9 @@ Facts facts_of(const Scene& scene, ViewBounds& bounds, Size size, double time, O
 
 /// Put another camera into the facts, with what it can see of the scene at that time.
 void look(Facts& facts, ViewBounds& bounds, const Camera& camera, double time);
+
+/// What levels are tried on: the facts' picture, drawn by `renderer`, which has to stay.
+TrialInputs trial_inputs(SceneRenderer& renderer, const Facts& facts, double time);
 
 /// The frame's textures by attachment name.
 Textures textures_of(const SceneFrame& frame);

@@ -83,22 +83,22 @@ public:
         images["color"] = widened(color.image);
 
         const GlSession session;
-        const std::optional<MetBudget> budget = meet_budget(chain, facts, chain_options_.curves());
-        ChainRunner runner(std::move(chain), facts);
         std::map<std::string, gl::Texture> uploaded;
-        Textures textures;
-        for (const std::string& name : runner.attachments()) {
-            const Image& image = images.at(name);
-            const Format format = image.channels == 1 ? Format::r32f : Format::rgba32f;
-            gl::Texture& texture = uploaded[name] = gl::Texture(image.width, image.height, format);
-            texture.upload(image);
-            textures[name] = texture.name();
-        }
+        const auto upload = [&](const std::vector<std::string>& names) {
+            Textures textures;
+            for (const std::string& name : names)
+                textures[name] = uploaded_texture(uploaded[name], images.at(name));
+            return textures;
+        };
         FrameInputs frame;
         frame.camera = facts.camera;
         frame.time = time_;
         frame.frame = frame_;
         frame.seed = seed_;
+        const std::optional<MetBudget> budget =
+            meet_budget(chain, facts, chain_options_.budget_source(), {upload, frame});
+        ChainRunner runner(std::move(chain), facts);
+        const Textures textures = upload(runner.attachments());
         runner.run(textures, frame, Timing::off, report_options_.watch());
         const bool has_alpha = color.image.channels == 4 || color.image.channels == 2;
         write_picture(runner, output_, has_alpha);
@@ -109,6 +109,16 @@ public:
     }
 
 private:
+    /// The texture's name; it is made when it holds nothing yet.
+    static std::uint32_t uploaded_texture(gl::Texture& texture, const Image& image) {
+        if (texture.name() == 0) {
+            texture =
+                gl::Texture(image.width, image.height, image.channels == 1 ? Format::r32f : Format::rgba32f);
+            texture.upload(image);
+        }
+        return texture.name();
+    }
+
     /// Everything but the colour, as the core wants it.
     std::map<std::string, Image> attachments(const Facts& facts) const {
         std::map<std::string, Image> images;

@@ -74,10 +74,10 @@ public:
         facts_.fold = true;
         const GlSession session;
         SceneRenderers scenes(scene, facts_.width, facts_.height, scene_options_.time());
-        make_runners(catalog);
-        textures_ = textures_of(scenes.draw(wanted_attachments()));
         frame_.camera = facts_.camera;
         frame_.time = scene_options_.time();
+        make_runners(catalog, scenes);
+        textures_ = textures_of(scenes.draw(wanted_attachments()));
 
         std::vector<Case> cases = make_cases(scenes);
         {
@@ -98,11 +98,15 @@ private:
         std::unique_ptr<ChainRunner> runner;
     };
 
-    void make_runners(const Catalog& catalog) {
+    void make_runners(const Catalog& catalog, SceneRenderers& scenes) {
+        const TrialInputs tried_on = {[&](const std::vector<std::string>& attachments) {
+                                          return textures_of(scenes.draw(attachments));
+                                      },
+                                      frame_};
         if (chains_.empty()) chains_.emplace_back("cinematic");
         for (const std::string& name : chains_) {
             Chain chain = read_chain_named(name, catalog);
-            if (std::optional<MetBudget> budget = meet_budget(chain, facts_, ""))
+            if (std::optional<MetBudget> budget = meet_budget(chain, facts_, {}, tried_on))
                 budgets_.emplace_back(name, std::move(*budget));
             const auto add = [&](const std::string& variant, const Facts& facts) {
                 runners_.push_back({name + variant, std::make_unique<ChainRunner>(chain, facts)});

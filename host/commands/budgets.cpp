@@ -160,8 +160,9 @@ private:
         std::string text = fmt::format(
             "<!-- Made by `{0}`. Not edited by hand. -->\n\n# Is it worth to ask for a budget?\n\n"
             "For budgets from tight to loose: the levels that `budget: {{ms: …}}` chooses, against one level "
-            "for all effects "
-            "that fits the same time. Errors are relative RMSE of linear light against the truth of the "
+            "for all effects that fits the same time. As in a running chain, levels are chosen by what they "
+            "do in a trial in the scene, and again when it is known how long the choice takes. Errors "
+            "are relative RMSE of linear light against the truth of the "
             "whole chain.\n\n"
             "Made by `{0}` on {1}. Clock: {2}. Medians of {3} rounds in which everything was drawn in "
             "turns.{4}\n",

@@ -1,4 +1,4 @@
-// postfx explain: the plan, without drawing anything; with --measure, what the frame decides and what skipping saves.
+// postfx explain: the plan, without drawing the chain; with --measure, what the frame decides and what skipping saves.
 #include "budget.hpp"
 #include "command.hpp"
 #include "gl_session.hpp"
@@ -46,10 +46,10 @@ public:
         const Scene scene = scene_options_.open();
         ViewBounds bounds(scene);
         Facts facts = scene_options_.facts(scene, bounds, output_for(output_));
-        // Nothing is drawn without --measure; but which device there is tells which curves hold.
+        // Drawn is only for --measure, and to meet a budget.
         std::optional<GlSession> session;
-        if (measure_ || (chain.budget && chain_options_.curves().empty())) session.emplace();
-        const std::optional<MetBudget> budget = meet_budget(chain, facts, chain_options_.curves());
+        if (measure_ || chain.budget) session.emplace();
+        const std::optional<MetBudget> budget = met_budget(chain, scene, facts);
         if (measure_) {
             facts.fold = true;
             return tell_measured(chain, scene, facts, budget, session->device().renderer);
@@ -57,7 +57,7 @@ public:
         const Plan plan = Planner().plan(chain, facts);
         if (!shader_.empty()) return print_shader(plan);
         Report report = describe(plan);
-        report.clock = "none: explain draws nothing";
+        report.clock = "none: explain measures only with --measure";
         if (json_) {
             fmt::print("{}\n", json_of(report, budget).dump(2));
         } else {
@@ -68,6 +68,13 @@ public:
     }
 
 private:
+    std::optional<MetBudget> met_budget(Chain& chain, const Scene& scene, const Facts& facts) const {
+        if (!chain.budget) return std::nullopt;
+        SceneRenderer renderer(scene);
+        return meet_budget(chain, facts, chain_options_.budget_source(),
+                           trial_inputs(renderer, facts, scene_options_.time()));
+    }
+
     static nlohmann::ordered_json json_of(const Report& report, const std::optional<MetBudget>& budget) {
         nlohmann::ordered_json json = nlohmann::ordered_json::parse(report_json(report));
         if (budget) json["budget"] = nlohmann::ordered_json::parse(budget->json());

@@ -76,9 +76,11 @@ public:
         check_parent(output_);
 
         const GlSession session;
-        const std::optional<MetBudget> budget = meet_budget(chain, facts, chain_options_.curves());
-        ChainRunner runner(std::move(chain), facts);
         SceneRenderer renderer(scene, {.samples = samples_});
+        const std::optional<MetBudget> budget =
+            meet_budget(chain, facts, chain_options_.budget_source(),
+                        trial_inputs(renderer, facts, scene_options_.time()));
+        ChainRunner runner(std::move(chain), facts);
         ProgressBar progress("rendering", frames_);
         for (int i = 0; i < frames_; ++i) {
             render_frame(renderer, runner, bounds, i);

@@ -27,6 +27,7 @@ constexpr const char* help = "  W A S D, Q E   fly: forward, left, back, right, 
                              "  right mouse    look around\n"
                              "  1 - 9          turn the chain's n-th effect on or off\n"
                              "  P              pause the scene\n"
+                             "  T              try the levels in the present picture, for the budget\n"
                              "  R              tell what ran and why, and how the budget is kept\n"
                              "  F12            save a picture beside the others (postfx_0000.png ...)\n"
                              "  H              this help\n"
@@ -92,9 +93,10 @@ public:
             throw Error(Place{.file = output_}, "the window's picture is for display: name a .png");
         }
         Window window(facts.width, facts.height, "postfx", debug_build);
-        std::optional<MetBudget> met = meet_budget(chain, facts, chain_options_.curves());
-        ChainRunner runner(std::move(chain), facts);
         SceneRenderer renderer(scene);
+        std::optional<MetBudget> met = meet_budget(chain, facts, chain_options_.budget_source(),
+                                                   trial_inputs(renderer, facts, scene_options_.time()));
+        ChainRunner runner(std::move(chain), facts);
         if (met) fmt::print("{}", met->text());
         if (met) budget_.emplace(std::move(*met), runner);
         fmt::print("{}", help);
@@ -129,12 +131,13 @@ private:
                 inputs.time = scene_time;
                 inputs.frame = frame;
                 const Textures textures = textures_of(renderer.render(
-                    size.x, size.y, scene_time, runner.attachments(), CameraOverride{camera, {}}));
+                    size.x, size.y, scene_time, budget_ ? budget_->attachments(runner) : runner.attachments(),
+                    CameraOverride{camera, {}}));
                 const std::uint32_t picture = budget_ ? budget_->run(runner, textures, inputs)
                                                       : runner.run(textures, inputs, Timing::off);
                 presenter.show(picture, size);
             }
-            handle_keys(window, runner);
+            handle_keys(window, runner, renderer, scene_time);
             window.set_title(fmt::format("postfx  {}  {:.0f} ms{}", scene.name, seconds * 1000,
                                          paused_ ? "  paused" : ""));
             window.swap_and_poll();
@@ -150,12 +153,14 @@ private:
         runner.replan(facts);
     }
 
-    void handle_keys(Window& window, ChainRunner& runner) {
+    void handle_keys(Window& window, ChainRunner& runner, SceneRenderer& renderer, double scene_time) {
         for (int key : window.pressed_keys()) {
             if (key >= GLFW_KEY_1 && key <= GLFW_KEY_9)
                 toggle(runner, static_cast<std::size_t>(key - GLFW_KEY_1));
             if (key == GLFW_KEY_P) paused_ = !paused_;
             if (key == GLFW_KEY_H) fmt::print("{}", help);
+            if (key == GLFW_KEY_T && budget_)
+                budget_->try_again(runner, trial_inputs(renderer, runner.facts(), scene_time));
             if (key == GLFW_KEY_R)
                 fmt::print("{}{}", report_text(runner.executor().report()),
                            budget_ ? budget_->text(runner) : "");

@@ -23,6 +23,7 @@ struct Disturbance {
 struct Change {
     double seconds;
     Choice choice;
+    int frames;
 };
 
 /// A run: the chain's true time (without noise) at every frame, and what was changed.
@@ -53,6 +54,14 @@ double step_between(const BudgetEntry& entry, int from, int to) {
     return step;
 }
 
+/// The most that one change may differ by: as many visible steps as the longest fade hides.
+double largest_change() {
+    double step = postfx::visible_step;
+    while (postfx::fade_frames(1.001 * step) <= postfx::longest_fade)
+        step *= 1.001;
+    return step;
+}
+
 /// Runs the keeper through a load and checks what holds always: a second between changes, none that is seen.
 Replay replay(BudgetKeeper& keeper, BudgetQuestion question, double seconds, const Load& load,
               Disturbance disturbance = {}) {
@@ -67,20 +76,23 @@ Replay replay(BudgetKeeper& keeper, BudgetQuestion question, double seconds, con
         double measured = ms * (1 + disturbance.noise * (2 * unit(random) - 1));
         if (unit(random) < disturbance.spike_chance) measured *= 5;
         keeper.follow(question);
-        const auto choice = keeper.frame(now, measured);
-        if (!choice) continue;
+        const auto change = keeper.frame(now, measured);
+        if (!change) continue;
         double seen = 0;
         for (std::size_t i = 0; i < question.entries.size(); ++i) {
             BudgetEntry& entry = question.entries[i];
             if (entry.options.empty()) continue;
-            seen += step_between(entry, entry.level, choice->levels[i]);
-            entry.level = choice->levels[i];
+            seen += step_between(entry, entry.level, change->choice.levels[i]);
+            entry.level = change->choice.levels[i];
             entry.level_id = entry.options[static_cast<std::size_t>(entry.level)].id;
         }
         CHECK(seen > 0);
-        CHECK(seen <= postfx::visible_step * (1 + 1e-12)); // steps are added up in another order
+        CHECK(seen <= largest_change() * 1.001); // found in steps of so much
+        CHECK(change->frames <= postfx::longest_fade);
+        // Steps are added up in another order.
+        CHECK(change->frames >= postfx::fade_frames(seen * (1 - 1e-12)));
         if (!run.changes.empty()) CHECK(now - run.changes.back().seconds >= 1);
-        run.changes.push_back({now, *choice});
+        run.changes.push_back({now, change->choice, change->frames});
     }
     run.question = question;
     return run;
@@ -119,9 +131,11 @@ double slow_phase(double seconds) {
 TEST_CASE("the budget holds a second after each change of load") {
     const Budget budget = within_ms(5);
     const Disturbance disturbance = GENERATE(Disturbance{}, Disturbance{0.2, 0}, Disturbance{0.2, 0.1});
-    CAPTURE(disturbance.noise, disturbance.spike_chance);
+    // At once, and over several frames.
+    const double step = GENERATE(0.0002, 1.1 * postfx::visible_step);
+    CAPTURE(disturbance.noise, disturbance.spike_chance, step);
     BudgetKeeper keeper(budget);
-    const Replay run = replay(keeper, chosen(three_effects(), budget), 30, slow_phase, disturbance);
+    const Replay run = replay(keeper, chosen(three_effects(step), budget), 30, slow_phase, disturbance);
     CHECK(run.longest_ms(10, 11) > 1.1 * budget.limit); // there was something to do
     CHECK(run.longest_ms(1, 10) <= 1.1 * budget.limit);
     CHECK(run.longest_ms(11, 20) <= 1.1 * budget.limit);
@@ -174,11 +188,11 @@ TEST_CASE("a choice that takes longer than predicted is not tried again and agai
     std::size_t changes = 0;
     for (int frame = 0; frame < 60 * 300; ++frame) {
         keeper.follow(question);
-        const auto choice = keeper.frame(frame * seconds_per_frame, question.entries[0].level == 1 ? 12 : 2);
-        if (!choice) continue;
+        const auto change = keeper.frame(frame * seconds_per_frame, question.entries[0].level == 1 ? 12 : 2);
+        if (!change) continue;
         ++changes;
-        question.entries[0].level = choice->levels[0];
-        question.entries[0].level_id = choice->levels[0] == 1 ? "level_1" : "level_0";
+        question.entries[0].level = change->choice.levels[0];
+        question.entries[0].level_id = change->choice.levels[0] == 1 ? "level_1" : "level_0";
     }
     CHECK(changes >= 2);
     CHECK(changes <= 16); // waits double up to a minute: 2, 4, ... 64, 64, 64 seconds
@@ -187,8 +201,8 @@ TEST_CASE("a choice that takes longer than predicted is not tried again and agai
 
 TEST_CASE("changes that would be seen are made in several steps") {
     const Budget budget = within_ms(5);
-    // Every level is 0.4 of what is seen: two at once.
-    const BudgetQuestion start = chosen(three_effects(0.4 * postfx::visible_step), budget);
+    // Every level is 0.4 of what can be faded over: two at once.
+    const BudgetQuestion start = chosen(three_effects(0.4 * largest_change()), budget);
     BudgetKeeper keeper(budget);
     const Replay run = replay(keeper, start, 20, [](double seconds) { return seconds < 5 ? 1.0 : 3.0; });
     CHECK(run.changes_in(5, 15) >= 3);
@@ -197,10 +211,24 @@ TEST_CASE("changes that would be seen are made in several steps") {
     CHECK(run.changes_in(14, 20) == 0);
 }
 
+TEST_CASE("as many frames as keep each step of a fade from being seen") {
+    using postfx::fade_frames, postfx::visible_step;
+    CHECK(fade_frames(0) == 1);
+    CHECK(fade_frames(visible_step) == 1);
+    CHECK(fade_frames(1.01 * visible_step) == 2);
+    for (double step = visible_step; step < 1; step *= 1.07) {
+        CAPTURE(step);
+        const double frames = fade_frames(step);
+        CHECK(step / std::sqrt(frames) <= visible_step * (1 + 1e-12)); // a root and a power of it
+        if (frames > 1) CHECK(step / std::sqrt(frames - 1) > visible_step * (1 - 1e-12));
+    }
+    CHECK(fade_frames(std::numeric_limits<double>::infinity()) > postfx::longest_fade);
+}
+
 TEST_CASE("a change is left out when any step would be seen") {
     const Budget budget = within_ms(5);
     BudgetQuestion question;
-    question.entries = {ladder("a", {{1, 0.1}, {4, 0.05}}, 2 * postfx::visible_step, 1)};
+    question.entries = {ladder("a", {{1, 0.1}, {4, 0.05}}, 1.1 * largest_change(), 1)};
     BudgetKeeper keeper(budget);
     const Replay run = replay(keeper, question, 5, [](double) { return 2.0; });
     CHECK(run.changes.empty());
@@ -236,11 +264,11 @@ TEST_CASE("pinned and skipped effects are left alone, and times that are none ar
         for (int i = 0; i < 600; ++i)
             CHECK_FALSE(keeper.frame(i * seconds_per_frame, ms));
     }
-    std::optional<Choice> choice;
-    for (int i = 600; i < 1200 && !choice; ++i)
-        choice = keeper.frame(i * seconds_per_frame, 3.4);
-    REQUIRE(choice);
-    CHECK(choice->levels[0] == 3);
-    CHECK(choice->levels[1] == 4);
-    CHECK(choice->levels[2] < 4);
+    std::optional<postfx::LevelChange> change;
+    for (int i = 600; i < 1200 && !change; ++i)
+        change = keeper.frame(i * seconds_per_frame, 3.4);
+    REQUIRE(change);
+    CHECK(change->choice.levels[0] == 3);
+    CHECK(change->choice.levels[1] == 4);
+    CHECK(change->choice.levels[2] < 4);
 }

@@ -89,7 +89,7 @@ TEST_CASE("explain --measure tells what skipping saves") {
         run_program({"explain", scene, "--chain", "none", "--size", "32x32", "--measure", "--samples", "3"})
             .out,
         Catch::Contains("nothing is skipped"));
-    CHECK(json_of({"explain", scene, "--json"})["clock"] == "none: explain draws nothing");
+    CHECK(json_of({"explain", scene, "--json"})["clock"] == "none: explain measures only with --measure");
 
     check_refused(run_program({"explain", scene, "--measure", "--run-all"}), "give one of them");
     check_refused(run_program({"explain", scene, "--measure", "--shader", "x"}), "--shader");

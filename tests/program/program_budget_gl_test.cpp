@@ -44,7 +44,12 @@ struct Folder {
         command.insert(command.end(), arguments.begin(), arguments.end());
         return run_command(command);
     }
-    Json explain(const std::vector<std::string>& more) const {
+    /// By the curves alone: what is expected can be reckoned from them.
+    Json explain(std::vector<std::string> more) const {
+        more.emplace_back("--by-curves");
+        return explain_tried(more);
+    }
+    Json explain_tried(const std::vector<std::string>& more) const {
         std::vector<std::string> arguments = {"explain", "cornell", "--chain", chain,   "--curves",
                                               curves,    "--size",  "640x360", "--json"};
         arguments.insert(arguments.end(), more.begin(), more.end());
@@ -105,6 +110,39 @@ TEST_CASE("explain tells pins and what costs nothing") {
                                && Catch::Contains("skipped, configuration: enabled is false")
                                && Catch::Contains("predicted 6 ms, 1 of them without any effect")
                                && Catch::Contains(folder.curves));
+}
+
+TEST_CASE("levels are chosen by what they do in the scene") {
+    const Folder folder;
+    // By the curves bloom is farther from its truth than ssao at any level, and the scene has nothing that glows.
+    put_bytes(folder.chain, "effects: [ssao: {radius: 1}, bloom: {intensity: 0.0001}]\n");
+    put_bytes(folder.curves, R"({
+        "device": "made up", "driver": "1", "clock": "none", "made_by": "a test",
+        "base": {"fixed_ms": 0, "ms_per_megapixel": 0},
+        "effects": {
+          "bloom": [{"level": "low", "fixed_ms": 1, "ms_per_megapixel": 0, "error": 0.5, "step_to_next": 0},
+                    {"level": "high", "fixed_ms": 5, "ms_per_megapixel": 0, "error": 0.3, "step_to_next": 0}],
+          "ssao": [{"level": "low", "fixed_ms": 1, "ms_per_megapixel": 0, "error": 0.05, "step_to_next": 0},
+                   {"level": "high", "fixed_ms": 5, "ms_per_megapixel": 0, "error": 0.02, "step_to_next": 0}]
+        }})");
+    const Json by_curves = folder.explain({"--budget", "ms=6"});
+    CHECK(level_of(by_curves, "bloom") == "high");
+    CHECK(level_of(by_curves, "ssao") == "low");
+    CHECK(by_curves["tried"].empty());
+    const Json tried = folder.explain_tried({"--budget", "ms=6"});
+    CHECK(level_of(tried, "bloom") == "low");
+    CHECK(level_of(tried, "ssao") == "high");
+    CHECK(tried["tried"] == Json::array({"bloom", "ssao"}));
+    CHECK(tried["predicted_error"].get<double>() < by_curves["predicted_error"].get<double>());
+    CHECK(tried == folder.explain_tried({"--budget", "ms=6"})); // what is drawn is the same every time
+
+    // Where there is time for one level alone, there is nothing to try.
+    CHECK(folder.explain_tried({"--budget", "ms=2"})["tried"].empty());
+
+    const Outcome spoken = folder.run({"explain", "cornell", "--size", "64x36", "--chain", folder.chain,
+                                       "--curves", folder.curves, "--budget", "error=0.1"});
+    CHECK(spoken.status == 0);
+    CHECK_THAT(spoken.out, Catch::Contains("errors: tried in this scene: bloom, ssao\n"));
 }
 
 TEST_CASE("a budget that can't be met by anything known is refused") {

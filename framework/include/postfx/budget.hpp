@@ -8,6 +8,7 @@
 
 #include <cstddef>
 #include <deque>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -37,7 +38,8 @@ struct BudgetEntry {
     std::string reason; ///< skipped or unknown: why
     int level = 0;      ///< that it has
     std::string level_id;
-    std::vector<LevelOption> options; ///< in order of decreasing error; of a pinned one its level alone
+    std::vector<LevelOption>
+        options; ///< as on the curve: of decreasing error there; of a pinned one its level alone
     bool operator==(const BudgetEntry&) const = default;
 };
 std::string_view role_name(BudgetEntry::Role role);
@@ -55,6 +57,22 @@ struct BudgetQuestion {
 
 /// `plan`: of the chain; tells the picture's size and what is skipped. Levels that are on no curve are no options.
 BudgetQuestion budget_question(const Chain& chain, const Curves& curves, const Plan& plan);
+
+/// What levels were seen to do in one picture of a scene: curves are means over other scenes.
+struct LevelTrial {
+    /// By the entry's name in the chain, of its first options, as many as were tried: the root mean square of the
+    /// difference, at the chain's end, from the last of them, as a share of the picture's own. So the last is 0.
+    std::map<std::string, std::vector<double>> distances;
+};
+
+/// How many of each entry's options a budget may have a use for, from the least exact one on; 0 where there is nothing
+/// to choose.
+std::vector<std::size_t> options_to_try(const BudgetQuestion& question, const Budget& budget);
+
+/// The question with the errors that the trial's scene tells. The last level that was tried has as much of its curve's
+/// error as the distance between the first and it has of what the curve says of that; errors of those before it are
+/// its own and their distance from it, taken to be independent. What was not tried keeps its curve's errors.
+BudgetQuestion in_scene(BudgetQuestion question, const LevelTrial& trial);
 
 /// A level for every entry of the chain.
 struct Choice {
@@ -114,9 +132,24 @@ std::string budget_text(const Budget& budget, const BudgetQuestion& question, co
 /// Andersson et al. 2020, eqs. 8 and 9): so at most a tenth of the picture may change by as much as can be seen.
 inline constexpr double visible_step = 0.01;
 
+/// A change that would be seen at once is faded in over so many frames at most: half a second at 60 per second.
+inline constexpr int longest_fade = 30;
+
+/// In how many equal steps a picture has to turn into another one that differs by `step` (LDR-FLIP, mean), for no step
+/// to be above visible_step. FLIP grows with the 0.7th power of small differences of colour and with the root of those
+/// of edges (Andersson et al. 2020, eqs. 6 and 7); the root is reckoned with, so that it takes the square of how many
+/// visible_steps it is.
+int fade_frames(double step);
+
+/// Levels that are to change.
+struct LevelChange {
+    Choice choice;
+    int frames = 1; ///< over which the picture is to fade into that of the new levels; 1: at once
+};
+
 /// Keeps a running chain within its time: measured times correct what the curves predict, and levels change when that
-/// is called for; at most once a second, by no more than visible_step, and up only when it will last. A budget of error
-/// is kept by the first choice already.
+/// is called for; at most once a second, by no more than visible_step from frame to frame, and up only when it will
+/// last. A budget of error is kept by the first choice already.
 class BudgetKeeper {
 public:
     explicit BudgetKeeper(Budget budget) : budget_(budget) {}
@@ -125,7 +158,7 @@ public:
     void follow(const BudgetQuestion& question);
     /// A frame was drawn: when (seconds, of any start), and what the chain took. Gives the levels from the next frame
     /// on, when they are to change; they are taken to be applied.
-    std::optional<Choice> frame(double seconds, double ms);
+    std::optional<LevelChange> frame(double seconds, double ms);
 
     const Budget& budget() const { return budget_; }
     double correction() const { return correction_; } ///< measured time as a multiple of the predicted
@@ -140,24 +173,26 @@ private:
         double seconds, value;
     };
     bool take(double seconds, double ms);
-    std::optional<Choice> lower(double seconds);
-    std::optional<Choice> raise(double seconds);
-    Choice towards(const Choice& target, double time_scale) const;
-    std::optional<Choice> change(double seconds, const Choice& choice);
+    std::optional<LevelChange> lower(double seconds);
+    std::optional<LevelChange> raise(double seconds);
+    LevelChange towards(const Choice& target, double time_scale) const;
+    std::optional<LevelChange> change(double seconds, LevelChange change);
     const LevelChooser& reachable();
 
     Budget budget_;
     BudgetQuestion question_;
-    std::optional<LevelChooser> reachable_; ///< by steps that are not seen
+    std::optional<LevelChooser> reachable_; ///< by changes that are not seen
     std::optional<LevelChooser> all_;       ///< by any
     std::deque<Sample> ratios_, corrections_;
     double correction_ = 1;
     std::optional<double> last_change_, last_raise_;
     double calm_seconds_ = least_calm_seconds; ///< that a raise waits for
-    int frames_since_change_ = 0, changes_ = 0;
+    int frames_to_ignore_ = settling_frames, changes_ = 0;
     std::string kept_over_;
 
     static constexpr double least_calm_seconds = 2;
+    /// After a change: programs are compiled, and a GPU's times are read some frames late.
+    static constexpr int settling_frames = 5;
 };
 
 } // namespace postfx

@@ -16,8 +16,6 @@ constexpr double window_seconds = 0.7;
 constexpr std::size_t window_least = 5;
 /// Being over the budget counts when the median was so for this long.
 constexpr double insistent_seconds = 0.3;
-/// After a change: programs are compiled, and a GPU's times are read some frames late.
-constexpr int settling_frames = 5;
 /// Shares of the limit. Over `tolerated` levels go down, to what is predicted to take `aim`; up only to what takes
 /// `headroom`. Far enough apart that the median's noise does not cross both.
 constexpr double tolerated = 1.05, aim = 0.95, headroom = 0.9;
@@ -40,7 +38,12 @@ std::optional<std::size_t> option_index(const BudgetEntry& entry, int level) {
     return std::nullopt;
 }
 
-/// With only those options that are reached from the present level by steps that are not seen. Levels that were never
+/// The most that one change may differ by.
+bool can_be_faded(double step) {
+    return fade_frames(step) <= longest_fade;
+}
+
+/// With only those options that are reached from the present level by changes that are not seen. Levels that were never
 /// chosen from a curve stay.
 BudgetQuestion reachable_question(BudgetQuestion question) {
     for (BudgetEntry& entry : question.entries) {
@@ -50,9 +53,9 @@ BudgetQuestion reachable_question(BudgetQuestion question) {
             continue;
         }
         std::size_t first = *present, end = *present + 1;
-        while (first > 0 && entry.options[first - 1].step_to_next <= visible_step)
+        while (first > 0 && can_be_faded(entry.options[first - 1].step_to_next))
             --first;
-        while (end < entry.options.size() && entry.options[end - 1].step_to_next <= visible_step)
+        while (end < entry.options.size() && can_be_faded(entry.options[end - 1].step_to_next))
             ++end;
         entry.options.assign(entry.options.begin() + static_cast<std::ptrdiff_t>(first),
                              entry.options.begin() + static_cast<std::ptrdiff_t>(end));
@@ -106,7 +109,13 @@ const LevelChooser& BudgetKeeper::reachable() {
     return *reachable_;
 }
 
-std::optional<Choice> BudgetKeeper::frame(double seconds, double ms) {
+int fade_frames(double step) {
+    if (!(step > visible_step)) return 1;
+    const double ratio = step / visible_step;
+    return static_cast<int>(std::min(std::ceil(ratio * ratio), 1e6));
+}
+
+std::optional<LevelChange> BudgetKeeper::frame(double seconds, double ms) {
     if (budget_.of != Budget::Of::ms || !take(seconds, ms)) return std::nullopt;
     const double since_change = last_change_ ? seconds - *last_change_ : calm_seconds_;
     if (since_change < seconds_between_changes) return std::nullopt;
@@ -126,7 +135,10 @@ std::optional<Choice> BudgetKeeper::frame(double seconds, double ms) {
 bool BudgetKeeper::take(double seconds, double ms) {
     const double predicted = question_.ms();
     if (!(ms > 0) || !std::isfinite(ms) || !(predicted > 0)) return false;
-    if (++frames_since_change_ <= settling_frames) return false;
+    if (frames_to_ignore_ > 0) {
+        --frames_to_ignore_;
+        return false;
+    }
     ratios_.push_back({seconds, ms / predicted});
     while (ratios_.size() > window_least && seconds - ratios_.front().seconds > window_seconds)
         ratios_.pop_front();
@@ -141,7 +153,7 @@ bool BudgetKeeper::take(double seconds, double ms) {
     return true;
 }
 
-std::optional<Choice> BudgetKeeper::lower(double seconds) {
+std::optional<LevelChange> BudgetKeeper::lower(double seconds) {
     // The older half of the window may be of before the load rose: one change is to be enough.
     std::vector<double> latest;
     for (const Sample& sample : ratios_) {
@@ -151,45 +163,45 @@ std::optional<Choice> BudgetKeeper::lower(double seconds) {
     const double slowdown = enough ? std::max(correction_, median_of(std::move(latest))) : correction_;
     const Budget wanted = {Budget::Of::ms, aim * budget_.limit};
     const BudgetAnswer answer = reachable().best(wanted, slowdown);
-    const Choice next = towards(answer.choice, slowdown);
-    kept_over_.clear();
-    if (!answer.fits) {
-        if (!all_) all_.emplace(question_);
-        const bool seen = all_->best(wanted, slowdown).choice.ms < answer.choice.ms;
-        kept_over_ = seen ? "what is cheaper would be seen to change" : "nothing is cheaper";
-    }
     if (last_raise_) {
         const bool relapse = seconds - *last_raise_ < relapse_seconds;
         calm_seconds_ = relapse ? std::min(2 * calm_seconds_, most_calm_seconds) : least_calm_seconds;
         last_raise_.reset();
     }
-    return change(seconds, next);
+    std::optional<LevelChange> lowered = change(seconds, towards(answer.choice, slowdown));
+    kept_over_.clear();
+    if (!answer.fits && !lowered) {
+        if (!all_) all_.emplace(question_);
+        const bool seen = all_->best(wanted, slowdown).choice.ms < answer.choice.ms;
+        kept_over_ = seen ? "what is cheaper would be seen to change" : "nothing is cheaper";
+    }
+    return lowered;
 }
 
-std::optional<Choice> BudgetKeeper::raise(double seconds) {
+std::optional<LevelChange> BudgetKeeper::raise(double seconds) {
     // As slow as it was at any time of the calm: a lull is no reason.
     double slowest = 0;
     for (const Sample& sample : corrections_)
         slowest = std::max(slowest, sample.value);
     const BudgetAnswer answer = reachable().best({Budget::Of::ms, headroom * budget_.limit}, slowest);
     if (!answer.fits || answer.choice.error > noticeably_better * question_.error()) return std::nullopt;
-    std::optional<Choice> raised = change(seconds, towards(answer.choice, slowest));
+    std::optional<LevelChange> raised = change(seconds, towards(answer.choice, slowest));
     if (raised) last_raise_ = seconds;
     return raised;
 }
 
-/// The target, or as far towards it as is not seen at once. What saves time goes first, so that what takes more finds
-/// room.
-Choice BudgetKeeper::towards(const Choice& target, double time_scale) const {
+/// The target, or as far towards it as is not seen in one change. What saves time goes first, so that what takes more
+/// finds room.
+LevelChange BudgetKeeper::towards(const Choice& target, double time_scale) const {
     BudgetQuestion reached = question_;
     double seen = 0;
     while (true) {
         std::vector<Move> moves = moves_towards(reached, target);
         std::erase_if(moves, [&](const Move& move) {
             const bool in_time = time_scale * (reached.ms() + move.ms) <= budget_.limit;
-            return seen + move.step > visible_step || (move.ms > 0 && !in_time);
+            return !can_be_faded(seen + move.step) || (move.ms > 0 && !in_time);
         });
-        if (moves.empty()) return levels_of(reached, time_scale);
+        if (moves.empty()) return {levels_of(reached, time_scale), fade_frames(seen)};
         const Move& best = *std::max_element(moves.begin(), moves.end(), [](const Move& a, const Move& b) {
             return std::pair(a.saved_per_step() > 0 ? a.saved_per_step() : 0, a.gained_per_step())
                    < std::pair(b.saved_per_step() > 0 ? b.saved_per_step() : 0, b.gained_per_step());
@@ -199,23 +211,23 @@ Choice BudgetKeeper::towards(const Choice& target, double time_scale) const {
     }
 }
 
-std::optional<Choice> BudgetKeeper::change(double seconds, const Choice& choice) {
+std::optional<LevelChange> BudgetKeeper::change(double seconds, LevelChange change) {
     bool same = true;
-    for (std::size_t i = 0; i < choice.levels.size(); ++i) {
+    for (std::size_t i = 0; i < change.choice.levels.size(); ++i) {
         BudgetEntry& entry = question_.entries[i];
-        if (entry.level == choice.levels[i]) continue;
+        if (entry.level == change.choice.levels[i]) continue;
         same = false;
-        entry.level = choice.levels[i];
+        entry.level = change.choice.levels[i];
         entry.level_id = entry.options[*option_index(entry, entry.level)].id;
     }
     if (same) return std::nullopt;
-    // What can be reached stays the same: a step that is not seen leads back as well.
+    // What can be reached stays the same: a change that is not seen leads back as well.
     last_change_ = seconds;
-    frames_since_change_ = 0;
+    frames_to_ignore_ = settling_frames;
     ratios_.clear();
     corrections_.clear();
     ++changes_;
-    return choice;
+    return change;
 }
 
 std::string BudgetKeeper::text() const {

@@ -2,6 +2,7 @@
 
 #include "chain_truth.hpp"
 #include "interruption.hpp"
+#include "level_trial.hpp"
 #include "measure.hpp"
 #include "truths/drawn_scene.hpp"
 
@@ -15,10 +16,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numeric>
 
 namespace postfx::host::study {
 namespace {
+
+/// A choice that takes another time than predicted is made again, as in a running chain; the second one may be of levels
+/// whose times are off by another factor.
+constexpr int corrections = 2;
 
 /// One level for all, as one would set it by hand: an effect that ends below has its most exact one that is on a curve.
 int uniform_level(const BudgetEntry& entry, const EffectInfo& effect, const std::string& level) {
@@ -34,7 +40,7 @@ public:
     Prover(StudyScene& scene, const Chain& chain, const Curves& curves, const BudgetProofOptions& options)
         : options_(options), chain_(chain),
           facts_(facts_of(scene.scene, scene.bounds, options.size, 0, Output::display)),
-          chooser_(budget_question(chain, curves, Planner().plan(chain, facts_))),
+          question_(budget_question(chain, curves, Planner().plan(chain, facts_))),
           renderer_(scene.scene, {.samples = 4}),
           scene_frame_(renderer_.render(facts_.width, facts_.height, 0, SceneRenderer::attachment_names())) {
         proof_.scene = scene.scene.name;
@@ -50,9 +56,15 @@ public:
         proof_.truths = truth.truths;
         proof_.truth_own_error = truth.own_error;
         measure_settings("one level for all");
+        set_budgets();
+        try_scene();
+        choose([](const ProvedBudget&) { return 1.0; });
+        measure_settings("levels chosen");
+        for (int i = 0; i < corrections; ++i) {
+            choose([this](const ProvedBudget& budget) { return slowdown(proof_.settings[budget.chosen]); });
+            measure_settings("levels chosen again");
+        }
         find_time_scale();
-        choose();
-        measure_settings("chosen and uniform levels");
         for (ProvedSetting& setting : proof_.settings)
             setting.error = relative_error(picture_of(setting), truth.picture).relative_rmse;
         compare();
@@ -64,16 +76,19 @@ private:
         const auto same = std::find_if(proof_.settings.begin(), proof_.settings.end(),
                                        [&](const ProvedSetting& known) { return known.levels == levels; });
         if (same != proof_.settings.end()) return static_cast<std::size_t>(same - proof_.settings.begin());
-        BudgetQuestion question = chooser_.question();
-        for (std::size_t i = 0; i < levels.size(); ++i)
-            question.entries[i].level = levels[i];
-        proof_.settings.push_back({.name = name,
-                                   .levels = levels,
-                                   .predicted_ms = question.ms(),
-                                   .predicted_error = question.error(),
-                                   .ms = {},
-                                   .error = 0});
+        ProvedSetting& setting = proof_.settings.emplace_back();
+        setting.name = name;
+        setting.levels = levels;
+        predict(setting);
         return proof_.settings.size() - 1;
+    }
+
+    void predict(ProvedSetting& setting) const {
+        BudgetQuestion question = question_;
+        for (std::size_t i = 0; i < setting.levels.size(); ++i)
+            question.entries[i].level = setting.levels[i];
+        setting.predicted_ms = question.ms();
+        setting.predicted_error = question.error();
     }
 
     void add_uniform_settings() {
@@ -82,8 +97,7 @@ private:
                 throw Error(fmt::format("no effect of the chain has a level \"{}\"", level));
             std::vector<int> levels;
             for (std::size_t i = 0; i < chain_.entries.size(); ++i)
-                levels.push_back(
-                    uniform_level(chooser_.question().entries[i], *chain_.entries[i].effect, level));
+                levels.push_back(uniform_level(question_.entries[i], *chain_.entries[i].effect, level));
             add("all " + level, levels);
         }
         proof_.uniform_count = proof_.settings.size();
@@ -109,25 +123,43 @@ private:
             proof_.settings[i].ms = spread_of(cases[i].times(gpu_));
     }
 
-    /// Curves are of other scenes: a running chain is corrected by what it measures, and so is this.
-    void find_time_scale() {
-        std::vector<double> ratios;
-        for (const ProvedSetting& setting : proof_.settings)
-            ratios.push_back(setting.ms.median / setting.predicted_ms);
-        proof_.time_scale = median(ratios);
-    }
-
-    void choose() {
+    /// From the quickest of one level for all to the slowest, each the same multiple of the one before.
+    void set_budgets() {
         const auto [first, last] =
             std::minmax_element(proof_.settings.begin(), proof_.settings.end(),
                                 [](const auto& a, const auto& b) { return a.ms.median < b.ms.median; });
         const double least = first->ms.median, most = last->ms.median;
-        for (int i = 0; i < options_.budgets; ++i) {
-            ProvedBudget budget;
-            budget.ms = least * std::pow(most / least, i / std::max(1.0, options_.budgets - 1.0));
-            const BudgetAnswer answer = chooser_.best({Budget::Of::ms, budget.ms}, proof_.time_scale);
+        for (int i = 0; i < options_.budgets; ++i)
+            proof_.budgets.emplace_back().ms =
+                least * std::pow(most / least, i / std::max(1.0, options_.budgets - 1.0));
+    }
+
+    /// As is done before a budget is met: errors are those that the scene tells.
+    void try_scene() {
+        TrialInputs inputs;
+        inputs.draw_scene = [this](const std::vector<std::string>&) { return textures_of(scene_frame_); };
+        inputs.frame.camera = facts_.camera;
+        const Budget most = {Budget::Of::ms, proof_.budgets.back().ms};
+        question_ = in_scene(question_, try_levels(chain_, question_, most, facts_, inputs));
+        for (ProvedSetting& setting : proof_.settings)
+            predict(setting);
+    }
+
+    /// Measured time as a multiple of what the curves predict.
+    static double slowdown(const ProvedSetting& setting) { return setting.ms.median / setting.predicted_ms; }
+
+    void find_time_scale() {
+        std::vector<double> ratios;
+        for (const ProvedSetting& setting : proof_.settings)
+            ratios.push_back(slowdown(setting));
+        proof_.time_scale = median(ratios);
+    }
+
+    void choose(const std::function<double(const ProvedBudget&)>& time_scale) {
+        const LevelChooser chooser(question_);
+        for (ProvedBudget& budget : proof_.budgets) {
+            const BudgetAnswer answer = chooser.best({Budget::Of::ms, budget.ms}, time_scale(budget));
             budget.chosen = add(text_of(answer.choice.levels), answer.choice.levels);
-            proof_.budgets.push_back(budget);
         }
     }
 
@@ -146,7 +178,7 @@ private:
     std::string text_of(const std::vector<int>& levels) const {
         std::vector<std::string> parts;
         for (std::size_t i = 0; i < levels.size(); ++i) {
-            if (chooser_.question().entries[i].role != BudgetEntry::Role::free) continue;
+            if (question_.entries[i].role != BudgetEntry::Role::free) continue;
             const ChainEntry& entry = chain_.entries[i];
             parts.push_back(fmt::format("{} {}", entry.name,
                                         entry.effect->levels[static_cast<std::size_t>(levels[i])].id));
@@ -179,7 +211,7 @@ private:
     BudgetProofOptions options_;
     Chain chain_;
     Facts facts_;
-    LevelChooser chooser_;
+    BudgetQuestion question_;
     SceneRenderer renderer_;
     SceneFrame scene_frame_;
     bool gpu_ = false;

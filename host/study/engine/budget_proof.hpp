@@ -1,5 +1,6 @@
-// Is it worth to ask for a budget? A chain with the levels that curves choose, against the same chain with one level
-// everywhere: both measured in turns on a scene, both compared with the truth of the chain. [GL thread]
+// Is it worth to ask for a budget? A chain with the levels that a budget chooses, against the same chain with one level
+// everywhere: both measured in turns on a scene, both compared with the truth of the chain. Chosen is as in a running
+// chain: by the scene's trial of levels, and again by what the choice then took. [GL thread]
 #pragma once
 
 #include "study/findings.hpp"
@@ -40,8 +41,7 @@ struct BudgetProof {
     std::string scene, clock;
     Size size;
     int rounds = 0;
-    double time_scale =
-        1; ///< measured time as a multiple of what the curves predict, median of the uniform settings
+    double time_scale = 1; ///< measured time as a multiple of what the curves predict, median of all settings
     double truth_own_error = 0;
     std::vector<std::string> truths;
     std::vector<ProvedSetting> settings; ///< uniform ones first
