@@ -94,6 +94,9 @@ struct BudgetAnswer {
     std::optional<RunnerUp> runner_up;
 };
 
+/// Errors that differ by less than this factor are the same: no curve is known any better.
+inline constexpr double same_error = 1.01;
+
 class ParetoFront;
 
 /// Answers budgets for one question, each in microseconds: all choices that no other one dominates are found once.
@@ -104,8 +107,9 @@ public:
     LevelChooser(LevelChooser&&) noexcept;
     LevelChooser& operator=(LevelChooser&&) noexcept;
 
-    /// The least error within a time, or the least time within an error. Of choices that are equal in both, entries from
-    /// the last on have the less exact level. `time_scale`: how much slower than its curves the chain runs.
+    /// The least error within a time, or the least time within an error. For a time, errors up to same_error times the
+    /// least are as good, and of them the quickest choice is taken. Of choices that are equal in both, entries from the
+    /// last on have the less exact level. `time_scale`: how much slower than its curves the chain runs.
     BudgetAnswer best(const Budget& budget, double time_scale = 1) const;
 
     const BudgetQuestion& question() const { return question_; }

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 namespace postfx {
 namespace {
@@ -152,20 +153,22 @@ BudgetAnswer LevelChooser::best(const Budget& budget, double time_scale) const {
     const auto in_time = [&](const FrontPoint& point) {
         return time_scale * (question_.base_ms + point.ms) <= budget.limit;
     };
-    const auto too_far = [&](const FrontPoint& point) {
-        return std::sqrt(point.squared_error) > budget.limit;
+    // Quicker ones come first, more exact ones last.
+    const auto first_within = [&](double error) {
+        const auto too_far = [&](const FrontPoint& point) { return std::sqrt(point.squared_error) > error; };
+        return static_cast<std::size_t>(std::partition_point(points.begin(), points.end(), too_far)
+                                        - points.begin());
     };
-    // By time the last that is within the limit, by error the first.
-    const auto edge = by_time ? std::partition_point(points.begin(), points.end(), in_time)
-                              : std::partition_point(points.begin(), points.end(), too_far);
-    const auto edge_index = static_cast<std::size_t>(edge - points.begin());
     BudgetAnswer answer;
-    answer.fits = by_time ? edge_index > 0 : edge_index < points.size();
     std::size_t chosen = 0;
     if (by_time) {
-        chosen = answer.fits ? edge_index - 1 : 0;
+        const auto edge = std::partition_point(points.begin(), points.end(), in_time);
+        answer.fits = edge != points.begin();
+        if (answer.fits) chosen = first_within(same_error * std::sqrt(std::prev(edge)->squared_error));
     } else {
-        chosen = answer.fits ? edge_index : points.size() - 1;
+        chosen = first_within(budget.limit);
+        answer.fits = chosen < points.size();
+        if (!answer.fits) chosen = points.size() - 1;
     }
     answer.choice = choice_at(chosen, time_scale);
 
