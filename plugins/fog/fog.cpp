@@ -37,12 +37,10 @@ constexpr const char* attachments[] = {"depth"};
 constexpr postfx_level levels[] = {
     postfx::level("classic",
                   "constant density along the view axis: the same point is fogged less at the edge"),
-    postfx::level("low",
-                  "height fog in its usual form: off by up to 7e-4 near level rays, lost from high above"),
     postfx::level("medium", "exact up to rounding; higher levels would be the same shader"),
 };
-constexpr const char* sources[] = {"fog_classic.glsl", "fog_low.glsl", "fog.glsl"};
-constexpr int medium = 2;
+constexpr const char* sources[] = {"fog_classic.glsl", "fog.glsl"};
+constexpr int medium = 1;
 
 /// Of a pixel's ray, in lengths along the view axis.
 double longest_ray(const postfx::Request& in) {
