@@ -103,22 +103,25 @@ Triple triangular_field(double x, double y, double edge, std::uint32_t key) {
     return sum.normalised();
 }
 
-/// Points of a square lattice with `edge` [px], those within a channel's reach.
+/// Points of a square lattice with `edge` [px]: the black ones within the reach of a disc, the white ones within that of
+/// a smaller one, more of them the lighter it is.
 Triple square_field(double x, double y, double edge, double radius, const Triple& light, std::uint32_t key) {
     const auto i0 = static_cast<int>(std::floor(x / edge)), j0 = static_cast<int>(std::floor(y / edge));
     Triple result;
     for (std::size_t c = 0; c < 3; ++c) {
-        const double bare = std::clamp(1 - light[c], 0.001, 1.0);
-        const double x3 = 3 * radius * radius * std::pow(bare, 0.3);
-        const double reach = x3 > 1 ? 0.5 + std::sqrt((x3 - 0.25) / 3) : std::sqrt(5 / 9.0 + x3 * 4 / 9);
-        Sum sum;
+        const double bare = std::pow(std::clamp(1 - light[c], 0.02, 1.0), 0.2);
+        const double x3 = 1.5 * radius * radius * bare;
+        const double smaller = x3 > 1 ? 0.5 + std::sqrt((x3 - 0.25) / 3) : std::sqrt(5 / 9.0 + x3 * 4 / 9);
+        Sum discs, gaps;
         for (int j = j0 - 2; j <= j0 + 3; ++j) {
             for (int i = i0 - 2; i <= i0 + 3; ++i) {
-                const double weight = std::clamp(reach - std::hypot(x - i * edge, y - j * edge), 0.0, 1.0);
-                if (weight > 0) sum.add(numbers(word_at(i + 1, j + 1, key)), weight);
+                const bool black = (i + j) % 2 == 0;
+                const double distance = std::hypot(x - i * edge, y - j * edge);
+                const double weight = std::clamp((black ? 2 * edge : smaller) - distance, 0.0, 1.0);
+                if (weight > 0) (black ? discs : gaps).add(numbers(word_at(i + 1, j + 1, key)), weight);
             }
         }
-        result[c] = sum.normalised()[c];
+        result[c] = bare * discs.normalised()[c] + std::sqrt(1 - bare * bare) * gaps.normalised()[c];
     }
     return result;
 }
