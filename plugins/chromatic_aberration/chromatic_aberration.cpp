@@ -20,7 +20,7 @@ constexpr postfx_level levels[] = {
     postfx::level("low",
                   "three images of different size: ghosts instead of fringes where they lie far apart"),
     postfx::level("medium", "samples of the spectrum at most 1.5 pixels apart, up to 2 x 12"),
-    postfx::level("high", "as medium, each sample by 4x4 pixels (Catmull-Rom) without ringing"),
+    postfx::level("high", "as medium, each sample by 12 pixels (Catmull-Rom) without ringing"),
     postfx::level("ultra",
                   "samples at most 0.75 pixels apart, up to 2 x 48, each by 6x6 pixels without ringing"),
     postfx::level("reference", "as ultra, samples at most 0.25 pixels apart, up to 2 x 256; slow"),

@@ -12,9 +12,15 @@ float chromatic_aberration_kernel(float d) {
                      : ((d - 8.0) * d + 21.0) / 12.0 * d - 1.5;
 }
 
-// How the picture at a place between pixels differs from `light` in two of its channels, by 2R x 2R pixels, line by
-// line. A cubic kernel rings: beside a lamp it would be darker than black. So no line leaves the range of its nearest
-// four pixels, nor their column that of the nearest four lines.
+// How a pixel differs from `light` in two of its channels.
+vec2 chromatic_aberration_at(ivec2 place, vec2 light, ivec2 size, bool is_red, sampler2D picture) {
+    vec3 found = texelFetch(picture, clamp(place, ivec2(0), size - 1), 0).rgb;
+    return chromatic_aberration_light(is_red ? found.rg : found.bg) - light;
+}
+
+// The same at a place between pixels, by 2R x 2R of them, line by line. Of 4x4 the corners count for little: the outer
+// lines are straight between their middle two pixels. A cubic kernel rings: beside a lamp it would be darker than
+// black. So no line leaves the range of its nearest four pixels, nor their column that of the nearest four lines.
 vec2 chromatic_aberration_difference(vec2 light, vec2 position, ivec2 size, bool is_red, sampler2D picture) {
     const int radius = CHROMATIC_ABERRATION_RADIUS;
     vec2 first = floor(position - 0.5);
@@ -25,17 +31,23 @@ vec2 chromatic_aberration_difference(vec2 light, vec2 position, ivec2 size, bool
     const vec2 farthest = vec2(131008.0); // two lights of +-65504
     vec2 sum = vec2(0.0), least = farthest, most = -farthest;
     for (int j = 1 - radius; j <= radius; ++j) {
-        vec2 line = vec2(0.0), line_least = farthest, line_most = -farthest;
-        for (int i = 1 - radius; i <= radius; ++i) {
-            vec3 found = texelFetch(picture, clamp(ivec2(first) + ivec2(i, j), ivec2(0), size - 1), 0).rgb;
-            vec2 difference = chromatic_aberration_light(is_red ? found.rg : found.bg) - light;
-            line += across[i + radius - 1] * difference;
-            if (i >= -1 && i <= 2) {
-                line_least = min(line_least, difference);
-                line_most = max(line_most, difference);
+        ivec2 place = ivec2(first) + ivec2(0, j);
+        vec2 line = vec2(0.0);
+        if (radius == 2 && (j == -1 || j == 2)) {
+            line = mix(chromatic_aberration_at(place, light, size, is_red, picture),
+                       chromatic_aberration_at(place + ivec2(1, 0), light, size, is_red, picture), share.x);
+        } else {
+            vec2 line_least = farthest, line_most = -farthest;
+            for (int i = 1 - radius; i <= radius; ++i) {
+                vec2 difference = chromatic_aberration_at(place + ivec2(i, 0), light, size, is_red, picture);
+                line += across[i + radius - 1] * difference;
+                if (i >= -1 && i <= 2) {
+                    line_least = min(line_least, difference);
+                    line_most = max(line_most, difference);
+                }
             }
+            line = clamp(line, line_least, line_most);
         }
-        line = clamp(line, line_least, line_most);
         sum += chromatic_aberration_kernel(abs(float(j) - share.y)) * line;
         if (j >= -1 && j <= 2) {
             least = min(least, line);
