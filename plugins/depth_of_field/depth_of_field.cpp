@@ -58,6 +58,9 @@ struct Gather {
     double thin_from, thinnest_from;
     /// The foreground's discs are gathered from every texel (1), every second (2) or every fourth (4).
     int foreground_lattice;
+    /// Where the largest disc is no larger [texels], all are gathered from every texel: fewer ones would be a coarser
+    /// picture than a lower level's.
+    int whole_up_to;
     /// Edge of a tile, texels. A tile and its eight neighbours must hold everything that reaches a texel of the
     /// tile or one beside it: largest_radius + half a texel of edge + 1.
     int tile;
@@ -65,10 +68,19 @@ struct Gather {
     /// Of a gathered disc: where a texel is a pixel it may be wider than the circle, see own_spread().
     double widest() const { return largest_radius + 0.1; }
     int smallest_lattice() const { return thin_from > smallest_radius ? 1 : 2; }
-    /// Does a pass join the parts of lattices?
-    bool joins() const { return thin_from < largest_radius || foreground_lattice > 1; }
+    bool joins_background() const { return thin_from < largest_radius; }
+    bool joins_foreground() const { return foreground_lattice > 1; }
 };
 constexpr double never = 99; ///< a radius that no disc has
+
+/// Without the lattices that no disc of this picture is large enough for: they cost a pass that joins them. Radii in
+/// texels: the largest, and the largest behind the focus.
+Gather fitted(Gather gather, double largest, double largest_behind) {
+    const bool whole = largest <= gather.whole_up_to;
+    if (whole || largest_behind < gather.thin_from) gather.thin_from = gather.thinnest_from = never;
+    if (whole) gather.foreground_lattice = 1;
+    return gather;
+}
 
 enum LevelIndex { low, medium, high, ultra, reference, classic };
 constexpr postfx_level levels[] = {
@@ -79,11 +91,11 @@ constexpr postfx_level levels[] = {
     postfx::level("reference", "Discs of every pixel, of any radius; slow"),
     postfx::level("classic", "Mean of a square; leaks, and near surfaces keep sharp edges"),
 };
-constexpr Gather gathers[] = {{4, 2, 2, never, never, 1, 8},
-                              {7, 2, 2, 4, 5, 4, 16},
-                              {7, 2, 2, never, never, 1, 16},
-                              {14, 1, 1, 0, 7, 4, 16},
-                              {40, 1, 1, never, never, 1, 48}};
+constexpr Gather gathers[] = {{4, 2, 2, never, never, 1, 0, 8},
+                              {7, 2, 2, 4, 5, 4, 0, 16},
+                              {7, 2, 2, never, never, 1, 0, 16},
+                              {14, 1, 1, 0, 7, 4, 7, 16},
+                              {40, 1, 1, never, never, 1, 0, 48}};
 
 /// Pictures with fewer rows than twice this have layers of the full size.
 constexpr int rows_of_a_pixel = 360;
@@ -184,15 +196,15 @@ int up_to_multiple(int size, int unit) {
 }
 
 /// The picture split into background and foreground, each blurred at a reduced size.
-void declare_gathers(const postfx::Request& in, postfx::Builder& out, const Lens& lens,
-                     const Gather& gather) {
+void declare_gathers(const postfx::Request& in, postfx::Builder& out, const Lens& lens, const Gather& level) {
     const AxialShift shift = axial_shift(in, lens.limit);
     const double largest = (lens.limit + shift.reach()) / 2; // pixels
     // Small pictures have finer layers, or their look would be another.
-    const int finest = std::min(gather.finest_block, std::max(1, in.height() / rows_of_a_pixel));
-    const int fitting = std::max(finest, static_cast<int>(std::ceil(largest / gather.largest_radius)));
-    const int block = fitting == 1 ? 1 : up_to_multiple(fitting, gather.block_step);
+    const int finest = std::min(level.finest_block, std::max(1, in.height() / rows_of_a_pixel));
+    const int fitting = std::max(finest, static_cast<int>(std::ceil(largest / level.largest_radius)));
+    const int block = fitting == 1 ? 1 : up_to_multiple(fitting, level.block_step);
     const double texels = 0.5 / block; // of radius per pixel of diameter
+    const Gather gather = fitted(level, largest / block, (lens.sky + shift.reach()) * texels);
     const double far_slope = share_slope(gather.smallest_lattice(), block);
     const double near_slope = share_slope(gather.foreground_lattice, block);
     const std::uint32_t width = divide_up(in.width(), block), height = divide_up(in.height(), block);
@@ -274,17 +286,22 @@ void declare_gathers(const postfx::Request& in, postfx::Builder& out, const Lens
             .format(gathered)
             .sized(width, height)
             .where(blurred, side);
-    if (gather.joins()) {
-        blurred_background = out.pass("fill", "depth_of_field_fill.glsl")
+    if (gather.joins_background()) {
+        blurred_background = out.pass("join_background", "depth_of_field_join_background.glsl")
                                  .reads("background", blurred_background, "nearest")
+                                 .format(gathered)
+                                 .sized(width, height)
+                                 .where(blurred, side);
+    }
+    if (gather.joins_foreground()) {
+        blurred_foreground = out.pass("join_foreground", "depth_of_field_join_foreground.glsl")
                                  .reads("foreground", blurred_foreground, "nearest")
                                  .reads("reach", reach, "nearest")
                                  .constant("DEPTH_OF_FIELD_TILE", gather.tile)
-                                 .constant("DEPTH_OF_FIELD_FOREGROUND_LATTICE", gather.foreground_lattice)
-                                 .formats({gathered, gathered})
+                                 .constant("DEPTH_OF_FIELD_LATTICE", gather.foreground_lattice)
+                                 .format(gathered)
                                  .sized(width, height)
-                                 .where(blurred, side);
-        blurred_foreground = blurred_background.output(1);
+                                 .where(covered, side);
     }
     const char* filter = block == 1 ? "nearest" : "linear";
     out.compose("depth_of_field.glsl")

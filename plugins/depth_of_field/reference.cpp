@@ -53,7 +53,13 @@ public:
     explicit Model(const ReferenceInput& input)
         : input_(input), lens_(input), layers_(layers_of(input.value("quality"))), axial_(lens_.axial()),
           block_(block_of(input.color.height)), width_((input.color.width + block_ - 1) / block_),
-          height_((input.color.height + block_ - 1) / block_) {}
+          height_((input.color.height + block_ - 1) / block_) {
+        // A level has no lattice for discs that its pictures can't have.
+        const bool small_discs = input.value("quality") == 3 && radius_in_texels(lens_.limit()) <= 7;
+        if (small_discs || radius_in_texels(lens_.behind_limit()) < layers_.thin_from)
+            layers_.thin_from = layers_.thinnest_from = 99;
+        if (small_discs) layers_.near_lattice = 1;
+    }
 
     Image64 picture() {
         for (int y = 0; y < height_; ++y) {
@@ -77,6 +83,7 @@ public:
 
 private:
     double circle(int x, int y) const { return lens_.circle(input_.attachments.at("depth").at(x, y, 0)); }
+    double radius_in_texels(double circle) const { return (circle + axial_.largest()) / 2 / block_; }
     /// Part of a pixel that the reduced layers show: from 0 at one pixel to 1 where the gathered disc is a texel.
     double blurred_part(double circle) const {
         const int lattice = circle > 0 ? layers_.far_lattice(0.5) : layers_.near_lattice;
