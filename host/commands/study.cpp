@@ -38,9 +38,12 @@ public:
             ->type_name("SCENE")
             ->default_str("")
             ->allow_extra_args(false);
-        app.add_option("--size", size_, "Of pictures that are compared with truths, pixels")
+        app.add_option(
+               "--size", size_,
+               "Of pictures that are compared with truths, pixels; without, as configs/study.yaml says, "
+               "or 480x270")
             ->type_name("WxH")
-            ->capture_default_str();
+            ->default_str("");
         app.add_option("--time-size", time_size_, "Of pictures whose time is measured, pixels")
             ->type_name("WxH")
             ->capture_default_str();
@@ -148,7 +151,7 @@ private:
     study::StudyOptions read_options() const {
         if (samples_ % 2 != 0) throw Error(fmt::format("--samples {} is not an even number", samples_));
         study::StudyOptions options;
-        options.picture = parse_size(size_);
+        if (!size_.empty()) options.picture = parse_size(size_);
         options.time_sizes = {parse_size(time_size_), parse_size(small_time_size_)};
         options.scenes = scenes_;
         options.truths.store = truth_store(store_);
@@ -166,8 +169,9 @@ private:
         words.insert(words.end(), effects_.begin(), effects_.end());
         for (const std::string& scene : scenes_)
             words.push_back("--scene " + scene);
-        words.push_back(fmt::format("--size {} --time-size {} --small-time-size {} --rounds {} --seconds {}",
-                                    size_, time_size_, small_time_size_, rounds_, seconds_));
+        if (!size_.empty()) words.push_back("--size " + size_);
+        words.push_back(fmt::format("--time-size {} --small-time-size {} --rounds {} --seconds {}",
+                                    time_size_, small_time_size_, rounds_, seconds_));
         if (samples_ > 0) words.push_back(fmt::format("--samples {}", samples_));
         words.push_back(no_growth_ ? "--no-growth" : fmt::format("--growth-seconds {}", growth_seconds_));
         return fmt::format("{}", fmt::join(words, " "));
@@ -180,7 +184,6 @@ private:
         conditions.device = device.renderer;
         conditions.driver = device.version;
         conditions.clock = clock.timer_queries_honest ? clock.text : "CPU time of all threads; " + clock.text;
-        conditions.picture_size = size_;
         conditions.time_sizes = {time_size_, small_time_size_};
         conditions.pixels_per_degree = default_pixels_per_degree;
         conditions.working_format = format_info(Format::rgba16f).name;
@@ -213,8 +216,8 @@ private:
 
     CatalogOptions catalog_options_;
     std::vector<std::string> effects_, scenes_, written_;
-    std::string size_ = "480x270", time_size_ = "1280x720", small_time_size_ = "640x360", output_ = "study",
-                store_, spec_;
+    std::string size_, time_size_ = "1280x720", small_time_size_ = "640x360", output_ = "study", store_,
+                       spec_;
     int rounds_ = 11, samples_ = 0;
     double seconds_ = 30, growth_seconds_ = 1;
     bool no_growth_ = false, json_ = false;

@@ -124,9 +124,10 @@ struct Thumbnail {
 
 struct EffectFindings {
     std::string id, help, stage;
-    std::string values;    ///< that differ from the defaults, as in a chain file; "" = none
-    std::string judged_by; ///< kind of the truth that Rung::error is from; "" = no truth of pixels
-    std::string error_is;  ///< in words
+    std::string values;       ///< that differ from the defaults, as in a chain file; "" = none
+    std::string picture_size; ///< of pictures that were compared with truths, "480x270"
+    std::string judged_by;    ///< kind of the truth that Rung::error is from; "" = no truth of pixels
+    std::string error_is;     ///< in words
     std::vector<MetricFacts> metrics;
     std::vector<SceneFindings> scenes;
     std::vector<Rung> rungs; ///< in the effect's order
@@ -151,7 +152,6 @@ struct Failure {
 struct Conditions {
     std::string program; ///< version and commit
     std::string command, device, driver, clock;
-    std::string picture_size;
     std::vector<std::string> time_sizes;
     double pixels_per_degree = 0;
     std::string working_format;

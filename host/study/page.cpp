@@ -42,17 +42,17 @@ std::string how_to_read(const Conditions& conditions) {
     return fmt::format(
         R"(<section class="reading"><h2>How to read it</h2>
 <p>Every effect has <b>levels</b>, from quick to careful, and <b>classic</b>: the way it is usually done. Each
-was drawn alone, at {0} in {1}, and compared with a <b>truth</b>: the same effect found slowly by other means
+was drawn alone, in {0}, and compared with a <b>truth</b>: the same effect found slowly by other means
 that share no code with it. The truth of the <i>scene</i> knows the whole scene; that of the <i>layer</i> is the
 best that can be made of the picture, depth and so on that the effect is given.</p>
 <ul>
 <li><b>Error</b> is the relative root-mean-square error: the root of the mean squared difference of light from
 the truth, as a share of the truth's own. Bright places weigh most. Half floats alone make 0.02 to 0.04 %.</li>
 <li><b>FLIP</b> (Andersson et al. 2020, LDR) is how much a viewer sees who flips between both pictures, 0 to 100
-%, at {2:.0f} pixels per degree (0.7 m from a screen 0.7 m and 3840 pixels wide). Light is first brought to the
+%, at {1:.0f} pixels per degree (0.7 m from a screen 0.7 m and 3840 pixels wide). Light is first brought to the
 display's range by x / (1 + x) per channel, the same everywhere; effects that work behind the tone map are
 compared as they are.</li>
-<li><b>Time</b> is what an effect adds to a chain at {3}: that of the chain with it, less that of the chain
+<li><b>Time</b> is what an effect adds to a chain at {2}: that of the chain with it, less that of the chain
 without, in turns, values in uniforms as while they are moved. The middle is the median of the rounds; 80 % of
 them are within the bar. A <b>copy</b> is the time of one pass that copies the picture.</li>
 <li><b>Hollow</b> marks are <b>dominated</b>: another level is clearly better in time or error and not worse in
@@ -61,12 +61,12 @@ differ by less than 2 % or are both below the truth's own, count as the same.</l
 <li><b>Bytes</b> are those of all pixels that passes write, and of everything they read once, at most: passes
 may be left out by the frame.</li>
 <li><b>Taps</b> are texture reads per pixel of the picture, counted by the shaders themselves while they drew each
-scene at {3}: loops that end early, passes of other sizes and those that the frame left out count as they went. A
+scene at {2}: loops that end early, passes of other sizes and those that the frame left out count as they went. A
 filtered read is one, and so is a gather of four texels. Like time, they are what an effect adds to a chain; mean
 over scenes.</li>
 </ul></section>
 )",
-        escaped(conditions.picture_size), escaped(conditions.working_format), conditions.pixels_per_degree,
+        escaped(conditions.working_format), conditions.pixels_per_degree,
         escaped(conditions.time_sizes.empty() ? "" : conditions.time_sizes.front()));
 }
 

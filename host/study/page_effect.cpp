@@ -258,7 +258,8 @@ std::string effect_section(const EffectFindings& effect, const Conditions& condi
     std::string scenes;
     for (const SceneFindings& scene : effect.scenes)
         scenes += (scenes.empty() ? "" : ", ") + scene.name;
-    html += fmt::format("<p class=\"note\">Means over {}; times at {}; values: {}.</p>\n", escaped(scenes),
+    html += fmt::format("<p class=\"note\">Means over {}; errors at {}, times at {}; values: {}.</p>\n",
+                        escaped(scenes), escaped(effect.picture_size),
                         escaped(conditions.time_sizes.empty() ? "" : conditions.time_sizes.front()),
                         effect.values.empty() ? "defaults" : escaped(effect.values));
     html += thumbnails(effect, pictures) + growth_details(effect) + metric_details(effect)

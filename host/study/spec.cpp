@@ -22,18 +22,33 @@ std::string value_text(const YamlValue& value) {
     return fmt::format("[{}]", fmt::join(items, ", "));
 }
 
+/// "radius: 1, mode: threshold"
+std::string values_text(const YamlValue& value) {
+    std::vector<std::string> items;
+    for (const auto& [key, item] : value.entries())
+        items.push_back(fmt::format("{}: {}", key.text(), value_text(item)));
+    return fmt::format("{}", fmt::join(items, ", "));
+}
+
+ChainEntry entry_with(const Catalog& catalog, const std::string& effect, const std::string& values) {
+    Chain chain;
+    parse_chain_entry(fmt::format("{}: {{{}}}", effect, values), "study of " + effect, catalog, chain);
+    return chain.entries.at(0);
+}
+
 RadiusSpec read_radius(const YamlValue& value) {
-    const YamlMap map(value, "radius", {"parameter", "per_height", "at_most", "scene"});
+    const YamlMap map(value, "radius", {"parameter", "per_height", "at_most", "scene", "values"});
     RadiusSpec radius;
     radius.parameter = map.at("parameter").text();
     map.read("per_height", radius.per_height, {1e-9, 1e9});
     map.read("at_most", radius.at_most, {1e-6, 10});
     map.read("scene", radius.scene);
+    if (const auto values = map.find("values")) radius.values = values_text(*values);
     return radius;
 }
 
 EffectSpec read_effect(const YamlValue& value, const EffectSpec& standard, const std::string& what) {
-    const YamlMap map(value, what, {"scenes", "values", "judged_by", "radius"});
+    const YamlMap map(value, what, {"scenes", "values", "judged_by", "size", "radius"});
     EffectSpec spec = standard;
     if (const auto scenes = map.find("scenes")) {
         spec.scenes.clear();
@@ -41,12 +56,8 @@ EffectSpec read_effect(const YamlValue& value, const EffectSpec& standard, const
             spec.scenes.push_back(scene.text());
     }
     if (spec.scenes.empty()) value.fail("expected at least one scene");
-    if (const auto values = map.find("values")) {
-        std::vector<std::string> items;
-        for (const auto& [key, item] : values->entries())
-            items.push_back(fmt::format("{}: {}", key.text(), value_text(item)));
-        spec.values = fmt::format("{}", fmt::join(items, ", "));
-    }
+    if (const auto values = map.find("values")) spec.values = values_text(*values);
+    map.read("size", spec.size);
     if (const auto kind = map.find("judged_by")) spec.judged_by = kind->choice({"scene", "layer"});
     if (const auto radius = map.find("radius")) spec.radius = read_radius(*radius);
     return spec;
@@ -77,9 +88,13 @@ const EffectSpec& Spec::of(const std::string& effect) const {
 }
 
 ChainEntry entry_of(const Catalog& catalog, const std::string& effect, const EffectSpec& spec) {
-    Chain chain;
-    parse_chain_entry(fmt::format("{}: {{{}}}", effect, spec.values), "study of " + effect, catalog, chain);
-    return chain.entries.at(0);
+    return entry_with(catalog, effect, spec.values);
+}
+
+ChainEntry growing_entry_of(const Catalog& catalog, const std::string& effect, const EffectSpec& spec) {
+    if (!spec.radius || spec.radius->values.empty()) return entry_of(catalog, effect, spec);
+    const char* comma = spec.values.empty() ? "" : ", ";
+    return entry_with(catalog, effect, spec.values + comma + spec.radius->values);
 }
 
 std::optional<double> value_for_radius(const RadiusSpec& radius, const EffectInfo& effect, double pixels,

@@ -17,12 +17,14 @@ struct RadiusSpec {
     double per_height = 1;
     double at_most = 1; ///< share of the height that a radius can be, by the effect's other limits
     std::string scene;  ///< that it holds for; "" = any
+    std::string values; ///< that the effect has meanwhile, beside its own; as EffectSpec's
 };
 
 struct EffectSpec {
     std::vector<std::string> scenes; ///< names; never empty
     std::string values;              ///< as in a chain file, without braces: "radius: 1, mode: threshold"
     std::string judged_by;           ///< kind of truth; "" = "scene" if there is one, else "layer"
+    std::string size; ///< of pictures that are compared with truths, "1280x720"; "" = as for all
     std::optional<RadiusSpec> radius;
 };
 
@@ -42,6 +44,8 @@ private:
 
 /// The effect with the spec's values, at its default level. Throws Error for values that it does not have.
 ChainEntry entry_of(const Catalog& catalog, const std::string& effect, const EffectSpec& spec);
+/// The same with the values that it has while its radius grows.
+ChainEntry growing_entry_of(const Catalog& catalog, const std::string& effect, const EffectSpec& spec);
 
 /// The entry's value of the radius's parameter for so many pixels; nothing when it would be out of its range.
 std::optional<double> value_for_radius(const RadiusSpec& radius, const EffectInfo& effect, double pixels,

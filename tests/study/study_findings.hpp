@@ -58,7 +58,6 @@ inline host::study::Findings made_findings(host::study::EffectFindings effect) {
                            .device = "paper",
                            .driver = "pencil",
                            .clock = "hourglass",
-                           .picture_size = "480x270",
                            .time_sizes = {"1000x1000", "500x500"},
                            .pixels_per_degree = 67,
                            .working_format = "rgba16f"};

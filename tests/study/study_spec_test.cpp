@@ -44,7 +44,8 @@ effects:
   haze:
     values: {amount: 0.5, mode: soft, color: [1, 0.5, 0]}
     judged_by: layer
-    radius: {parameter: reach, per_height: 2, at_most: 0.1, scene: attic}
+    size: 1280x720
+    radius: {parameter: reach, per_height: 2, at_most: 0.1, scene: attic, values: {mode: hard}}
   mist: {scenes: [cellar]}
 )",
                                   "study.yaml");
@@ -54,6 +55,9 @@ effects:
     CHECK(haze.judged_by == "layer");
     REQUIRE(haze.radius);
     CHECK(haze.radius->per_height == 2);
+    CHECK(haze.radius->values == "mode: hard");
+    CHECK(haze.size == "1280x720");
+    CHECK(spec.of("mist").size.empty());
     CHECK(spec.of("mist").scenes == std::vector<std::string>{"cellar"});
     CHECK(spec.of("unheard_of").scenes.size() == 2);
     CHECK_FALSE(spec.of("unheard_of").radius);
@@ -71,13 +75,13 @@ TEST_CASE("what a study file says wrongly is refused at its place") {
 }
 
 TEST_CASE("a radius in pixels is a share of the height, within what the parameter can be") {
-    const RadiusSpec radius{.parameter = "reach", .per_height = 2, .at_most = 0.2, .scene = ""};
+    const RadiusSpec radius{.parameter = "reach", .per_height = 2, .at_most = 0.2, .scene = "", .values = ""};
     const postfx::EffectInfo effect = effect_with_range(0.01, 0.3);
     CHECK(value_for_radius(radius, effect, 10, 200).value() == Approx(0.1));
     CHECK_FALSE(value_for_radius(radius, effect, 0.5, 200));               // 0.005: below the range
     CHECK_FALSE(value_for_radius(radius, effect, 35, 200));                // 0.35: above the range
-    CHECK_FALSE(value_for_radius({"reach", 1, 0.2, ""}, effect, 50, 200)); // a quarter of the height
-    CHECK_THROWS_AS(value_for_radius({"raech", 1, 1, ""}, effect, 1, 200), postfx::Error);
+    CHECK_FALSE(value_for_radius({"reach", 1, 0.2, "", ""}, effect, 50, 200)); // a quarter of the height
+    CHECK_THROWS_AS(value_for_radius({"raech", 1, 1, "", ""}, effect, 1, 200), postfx::Error);
 }
 
 TEST_CASE("the shipped study fits effects and scenes") {
@@ -90,6 +94,7 @@ TEST_CASE("the shipped study fits effects and scenes") {
         for (const std::string& scene : own.scenes)
             CHECK(std::filesystem::is_regular_file(configs / "scenes" / (scene + ".yaml")));
         if (!own.radius) continue;
+        CHECK(growing_entry_of(catalog(), effect->id, own).effect == effect);
         int radii = 0;
         for (double pixels = 2; pixels <= 256; pixels *= 2)
             radii += value_for_radius(*own.radius, *effect, pixels, 720).has_value() ? 1 : 0;

@@ -142,7 +142,7 @@ Growth over_radius(const GrowthInputs& inputs, const EffectFindings& findings) {
     const View view(inputs.scene, effect, inputs.time_size, 1),
         small(inputs.scene, effect, inputs.picture, 4);
     for (double pixels = smallest_radius; pixels <= largest_radius; pixels *= 2) {
-        std::vector<ChainEntry> entries = chosen(inputs.entries, drawn);
+        std::vector<ChainEntry> entries = chosen(inputs.growing_entries, drawn);
         const auto set_radius = [&](const View& of) {
             const auto value = value_for_radius(radius, effect, pixels, of.size().height);
             for (ChainEntry& entry : entries) {

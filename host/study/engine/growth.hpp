@@ -14,6 +14,8 @@ namespace postfx::host::study {
 struct GrowthInputs {
     StudyScene& scene;
     std::vector<ChainEntry> entries; ///< one per rung
+    std::vector<ChainEntry>
+        growing_entries; ///< the same, with the values that they have while the radius grows
     std::optional<RadiusSpec> radius;
     std::string judged_by;
     Size picture, time_size;

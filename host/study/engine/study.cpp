@@ -86,19 +86,25 @@ std::shared_ptr<StudyScene> Study::scene(const std::string& name) {
     return found;
 }
 
+Size Study::size_for(const EffectSpec& spec) const {
+    if (options_.picture) return *options_.picture;
+    return spec.size.empty() ? usual_picture : parse_size(spec.size);
+}
+
 EffectFindings Study::run(const EffectInfo& effect) {
     at_hand_.clear(); // of one that failed
     views_.clear();
     pictures_.clear();
     const double start_ms = gl::HostTime::now().wall_ms;
     const EffectSpec& spec = spec_.of(effect.id);
-    const ChainEntry entry = entry_of(catalog_, effect.id, spec);
-    const std::vector<ChainEntry> entries = every_level(entry);
+    const std::vector<ChainEntry> entries = every_level(entry_of(catalog_, effect.id, spec));
+    const Size picture = size_for(spec);
     EffectFindings findings;
     findings.id = effect.id;
     findings.help = effect.help;
     findings.stage = effect.stage;
     findings.values = spec.values;
+    findings.picture_size = fmt::format("{}x{}", picture.width, picture.height);
     findings.metrics = metrics_of(effect.id);
     findings.rungs = rungs_of(effect);
     for (const std::string& name : options_.scenes.empty() ? spec.scenes : options_.scenes) {
@@ -106,7 +112,7 @@ EffectFindings Study::run(const EffectInfo& effect) {
         SceneFindings& scene_findings = findings.scenes.emplace_back();
         scene_findings.name = at_hand_.back()->scene.name;
         scene_findings.description = at_hand_.back()->scene.description;
-        views_.push_back(std::make_unique<View>(*at_hand_.back(), effect, options_.picture, 4));
+        views_.push_back(std::make_unique<View>(*at_hand_.back(), effect, picture, 4));
     }
     for (std::size_t i = 0; i < entries.size(); ++i) {
         findings.rungs[i].scenes.resize(findings.scenes.size());
@@ -123,9 +129,10 @@ EffectFindings Study::run(const EffectInfo& effect) {
         const std::shared_ptr<StudyScene> grown = named ? scene(spec.radius->scene) : at_hand_.front();
         GrowthInputs inputs{.scene = *grown,
                             .entries = entries,
+                            .growing_entries = every_level(growing_entry_of(catalog_, effect.id, spec)),
                             .radius = spec.radius,
                             .judged_by = findings.judged_by,
-                            .picture = options_.picture,
+                            .picture = options_.picture.value_or(usual_picture),
                             .time_size = options_.time_sizes.front(),
                             .truths = options_.truths,
                             .times = options_.times,

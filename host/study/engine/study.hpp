@@ -8,13 +8,14 @@
 
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 namespace postfx::host::study {
 
 struct StudyOptions {
-    Size picture;
+    std::optional<Size> picture;     ///< that is compared with truths, for all effects; else as the spec says
     std::vector<Size> time_sizes;    ///< the first is the one that is told; others tell how time grows
     std::vector<std::string> scenes; ///< empty: those of the spec
     TruthOptions truths;
@@ -22,6 +23,9 @@ struct StudyOptions {
     bool growth = true;
     double growth_seconds = 1; ///< a level that takes longer for one draw is left out of its growth
 };
+
+/// Of pictures that are compared with truths where nobody says anything else.
+inline constexpr Size usual_picture{480, 270};
 
 class Study {
 public:
@@ -34,6 +38,7 @@ public:
     TimeCurve base() const;
 
 private:
+    Size size_for(const EffectSpec& spec) const;
     std::shared_ptr<StudyScene> scene(const std::string& name);
     void find_errors(EffectFindings& findings, const std::vector<ChainEntry>& entries);
     void find_steps(EffectFindings& findings);
