@@ -145,6 +145,14 @@ inline constexpr int longest_fade = 30;
 /// visible_steps it is.
 int fade_frames(double step);
 
+/// By which a running chain's levels follow its times, as shares of the budget. Over `tolerated` levels go down, to what
+/// is predicted to take `aim`; up only to what takes `headroom`, and only if the error falls to `noticeably_better` of
+/// what it is. Far enough apart that the median's noise does not cross both.
+struct KeepingRule {
+    double tolerated = 1.05, aim = 0.95, headroom = 0.9, noticeably_better = 0.95;
+};
+inline constexpr KeepingRule keeping_rule;
+
 /// Levels that are to change.
 struct LevelChange {
     Choice choice;

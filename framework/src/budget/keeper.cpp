@@ -16,11 +16,6 @@ constexpr double window_seconds = 0.7;
 constexpr std::size_t window_least = 5;
 /// Being over the budget counts when the median was so for this long.
 constexpr double insistent_seconds = 0.3;
-/// Shares of the limit. Over `tolerated` levels go down, to what is predicted to take `aim`; up only to what takes
-/// `headroom`. Far enough apart that the median's noise does not cross both.
-constexpr double tolerated = 1.05, aim = 0.95, headroom = 0.9;
-/// A raise is worth a change in the picture if the error falls to this share.
-constexpr double noticeably_better = 0.95;
 /// A raise that had to be taken back so soon was a mistake: the next waits twice as long, at most so long.
 constexpr double relapse_seconds = 10, most_calm_seconds = 64;
 
@@ -124,7 +119,7 @@ std::optional<LevelChange> BudgetKeeper::frame(double seconds, double ms) {
     for (const Sample& sample : corrections_) {
         if (seconds - sample.seconds <= insistent_seconds) quickest = std::min(quickest, sample.value);
     }
-    if (quickest * question_.ms() > tolerated * budget_.limit) return lower(seconds);
+    if (quickest * question_.ms() > keeping_rule.tolerated * budget_.limit) return lower(seconds);
     kept_over_.clear();
     const bool calm = since_change >= calm_seconds_ && !corrections_.empty()
                       && seconds - corrections_.front().seconds >= 0.9 * least_calm_seconds;
@@ -161,7 +156,7 @@ std::optional<LevelChange> BudgetKeeper::lower(double seconds) {
     }
     const bool enough = latest.size() >= window_least;
     const double slowdown = enough ? std::max(correction_, median_of(std::move(latest))) : correction_;
-    const Budget wanted = {Budget::Of::ms, aim * budget_.limit};
+    const Budget wanted = {Budget::Of::ms, keeping_rule.aim * budget_.limit};
     const BudgetAnswer answer = reachable().best(wanted, slowdown);
     if (last_raise_) {
         const bool relapse = seconds - *last_raise_ < relapse_seconds;
@@ -183,8 +178,10 @@ std::optional<LevelChange> BudgetKeeper::raise(double seconds) {
     double slowest = 0;
     for (const Sample& sample : corrections_)
         slowest = std::max(slowest, sample.value);
-    const BudgetAnswer answer = reachable().best({Budget::Of::ms, headroom * budget_.limit}, slowest);
-    if (!answer.fits || answer.choice.error > noticeably_better * question_.error()) return std::nullopt;
+    const BudgetAnswer answer =
+        reachable().best({Budget::Of::ms, keeping_rule.headroom * budget_.limit}, slowest);
+    if (!answer.fits || answer.choice.error > keeping_rule.noticeably_better * question_.error())
+        return std::nullopt;
     std::optional<LevelChange> raised = change(seconds, towards(answer.choice, slowest));
     if (raised) last_raise_ = seconds;
     return raised;

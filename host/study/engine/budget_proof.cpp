@@ -16,15 +16,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <numeric>
 
 namespace postfx::host::study {
 namespace {
 
-/// A choice that takes another time than predicted is made again, as in a running chain; the second one may be of levels
-/// whose times are off by another factor.
-constexpr int corrections = 2;
+/// A choice that takes another time than predicted is made again, as in a running chain: that may be of levels whose
+/// times are off by another factor.
+constexpr int corrections = 3;
 
 /// One level for all, as one would set it by hand: an effect that ends below has its most exact one that is on a curve.
 int uniform_level(const BudgetEntry& entry, const EffectInfo& effect, const std::string& level) {
@@ -55,15 +54,20 @@ public:
     BudgetProof run(const ChainTruth& truth) {
         proof_.truths = truth.truths;
         proof_.truth_own_error = truth.own_error;
-        measure_settings("one level for all");
+        measure_new_settings("one level for all");
         set_budgets();
         try_scene();
-        choose([](const ProvedBudget&) { return 1.0; });
-        measure_settings("levels chosen");
+        for (ProvedBudget& budget : proof_.budgets)
+            choose(budget, budget.ms, 1);
+        measure_new_settings("levels chosen");
         for (int i = 0; i < corrections; ++i) {
-            choose([this](const ProvedBudget& budget) { return slowdown(proof_.settings[budget.chosen]); });
-            measure_settings("levels chosen again");
+            for (ProvedBudget& budget : proof_.budgets)
+                correct(budget);
+            measure_new_settings("levels chosen again");
         }
+        measure_all_settings("all of them, in turns");
+        for (ProvedBudget& budget : proof_.budgets)
+            take_back(budget);
         find_time_scale();
         for (ProvedSetting& setting : proof_.settings)
             setting.error = relative_error(picture_of(setting), truth.picture).relative_rmse;
@@ -111,16 +115,23 @@ private:
         });
     }
 
-    void measure_settings(const std::string& what) {
+    void measure_all_settings(const std::string& what) {
+        measured_ = 0;
+        measure_new_settings(what);
+    }
+
+    void measure_new_settings(const std::string& what) {
         std::vector<Case> cases;
-        for (const ProvedSetting& setting : proof_.settings) {
-            std::shared_ptr<ChainRunner> runner = runner_of(setting, Output::display);
-            cases.push_back({setting.name, [this, runner] { draw(*runner); }});
+        for (std::size_t i = measured_; i < proof_.settings.size(); ++i) {
+            std::shared_ptr<ChainRunner> runner = runner_of(proof_.settings[i], Output::display);
+            cases.push_back({proof_.settings[i].name, [this, runner] { draw(*runner); }});
         }
+        if (cases.empty()) return;
         ProgressBar progress(proof_.scene + ", " + what, options_.rounds + warm_up_rounds);
         measure(cases, options_.rounds, progress, [] { StopOnInterrupt::check(); });
         for (std::size_t i = 0; i < cases.size(); ++i)
-            proof_.settings[i].ms = spread_of(cases[i].times(gpu_));
+            proof_.settings[measured_ + i].ms = spread_of(cases[i].times(gpu_));
+        measured_ = proof_.settings.size();
     }
 
     /// From the quickest of one level for all to the slowest, each the same multiple of the one before.
@@ -155,12 +166,29 @@ private:
         proof_.time_scale = median(ratios);
     }
 
-    void choose(const std::function<double(const ProvedBudget&)>& time_scale) {
-        const LevelChooser chooser(question_);
-        for (ProvedBudget& budget : proof_.budgets) {
-            const BudgetAnswer answer = chooser.best({Budget::Of::ms, budget.ms}, time_scale(budget));
-            budget.chosen = add(text_of(answer.choice.levels), answer.choice.levels);
-        }
+    void choose(ProvedBudget& budget, double limit_ms, double time_scale) {
+        const Choice choice = LevelChooser(question_).best({Budget::Of::ms, limit_ms}, time_scale).choice;
+        budget.chosen = add(text_of(choice.levels), choice.levels);
+    }
+
+    bool is_over(const ProvedBudget& budget, std::size_t setting) const {
+        return proof_.settings[setting].ms.median > keeping_rule.tolerated * budget.ms;
+    }
+
+    /// By what the choice took, as BudgetKeeper does.
+    void correct(ProvedBudget& budget) {
+        const std::size_t before = budget.chosen;
+        const bool over = is_over(budget, before);
+        if (!over) budget.kept = before;
+        choose(budget, (over ? keeping_rule.aim : keeping_rule.headroom) * budget.ms,
+               slowdown(proof_.settings[before]));
+        const double better = keeping_rule.noticeably_better * proof_.settings[before].predicted_error;
+        if (!over && proof_.settings[budget.chosen].predicted_error > better) budget.chosen = before;
+    }
+
+    /// A raise that takes too long does not last.
+    void take_back(ProvedBudget& budget) const {
+        if (budget.kept && is_over(budget, budget.chosen)) budget.chosen = *budget.kept;
     }
 
     void compare() {
@@ -215,6 +243,7 @@ private:
     SceneRenderer renderer_;
     SceneFrame scene_frame_;
     bool gpu_ = false;
+    std::size_t measured_ = 0; ///< settings, the first of them
     BudgetProof proof_;
 };
 

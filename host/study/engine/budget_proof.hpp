@@ -29,7 +29,8 @@ struct ProvedSetting {
 /// A budget of time and what became of it.
 struct ProvedBudget {
     double ms = 0;
-    std::size_t chosen = 0; ///< into settings
+    std::size_t chosen = 0;          ///< into settings
+    std::optional<std::size_t> kept; ///< the last one chosen before it that took no longer than was allowed
     std::optional<std::size_t>
         uniform; ///< the best of those with one level that took no longer than was allowed or than
                  ///< the chosen one took; none fits: nothing
