@@ -152,12 +152,11 @@ private:
         constexpr double full_hd = 1.920 * 1.080;
         fmt::print("on {}, {}\nclock: {}\n\n", measured.device, measured.driver, measured.clock);
         std::vector<std::vector<std::string>> rows = {
-            {"", "", "ms at 1920x1080", "ms per megapixel", "ms fixed", "error", "ms by the curves before"}};
+            {"", "", "ms at 1920x1080", "ms at 1 megapixel", "ms fixed", "error", "ms by the curves before"}};
         const auto add = [&](const std::string& effect, const std::string& level, const TimeCurve& time,
                              const std::string& error, const TimeCurve& before) {
             rows.push_back({effect, level, fmt::format("{:.3f}", time.at(full_hd)),
-                            fmt::format("{:.3f}", time.ms_per_megapixel),
-                            fmt::format("{:.3f}", time.fixed_ms), error,
+                            fmt::format("{:.3f}", time.at(1)), fmt::format("{:.3f}", time.fixed_ms), error,
                             fmt::format("{:.3f}", before.at(full_hd))});
         };
         add("no effect", "", measured.base, "", known.base);

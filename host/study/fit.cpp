@@ -21,6 +21,20 @@ struct Sums {
     double slope() const { return (w * xy - x * y) / spread(); }
 };
 
+/// Of logarithms of positive numbers.
+Sums log_sums(const Points& points) {
+    Sums sums;
+    for (const auto& [x, y] : points) {
+        if (x > 0 && y > 0 && std::isfinite(x) && std::isfinite(y)) sums.add(std::log(x), std::log(y), 1);
+    }
+    return sums;
+}
+
+/// Rounding leaves a little of the spread of equal points.
+bool differ_in_x(const Sums& sums) {
+    return sums.spread() > 1e-9 * std::max(1.0, sums.w * sums.xx);
+}
+
 /// One point for all of the same x.
 Points means_by_place(const Points& points) {
     std::map<double, std::pair<double, int>> sums;
@@ -37,13 +51,8 @@ Points means_by_place(const Points& points) {
 } // namespace
 
 std::optional<double> exponent_of(const Points& points) {
-    Sums sums;
-    for (const auto& [x, y] : points) {
-        if (x > 0 && y > 0 && std::isfinite(x) && std::isfinite(y)) sums.add(std::log(x), std::log(y), 1);
-    }
-    // Rounding leaves a little of the spread of equal points.
-    if (sums.spread() <= 1e-9 * std::max(1.0, sums.w * sums.xx)) return std::nullopt;
-    return sums.slope();
+    const Sums sums = log_sums(points);
+    return differ_in_x(sums) ? std::optional(sums.slope()) : std::nullopt;
 }
 
 TimeCurve fit_time(const Points& measured) {
@@ -58,11 +67,14 @@ TimeCurve fit_time(const Points& measured) {
         sums.add(x, y, 1 / (scale * scale));
     }
     const double mean = sums.y / sums.w;
-    if (sums.spread() <= 1e-9 * sums.w * sums.xx) return {std::max(0.0, mean), 0};
+    if (sums.spread() <= 1e-9 * sums.w * sums.xx) return {std::max(0.0, mean), 0, 1};
     const double slope = sums.slope(), fixed = (sums.y - slope * sums.x) / sums.w;
-    if (slope < 0) return {std::max(0.0, mean), 0};
-    if (fixed < 0) return {0, sums.xy / sums.xx};
-    return {fixed, slope};
+    if (slope < 0) return {std::max(0.0, mean), 0, 1};
+    if (fixed >= 0) return {fixed, slope, 1};
+    // A straight line would have to begin below 0: every pixel takes more, the more there are.
+    const Sums logs = log_sums(points);
+    if (!differ_in_x(logs) || logs.slope() < 1) return {0, sums.xy / sums.xx, 1};
+    return {0, std::exp((logs.y - logs.slope() * logs.x) / logs.w), logs.slope()};
 }
 
 } // namespace postfx::host::study

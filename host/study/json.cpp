@@ -23,7 +23,9 @@ Json spread_json(const Spread& spread) {
 }
 
 Json time_json(const TimeCurve& curve) {
-    return {{"fixed_ms", curve.fixed_ms}, {"ms_per_megapixel", curve.ms_per_megapixel}};
+    return {{"fixed_ms", curve.fixed_ms},
+            {"ms_per_megapixel", curve.ms_per_megapixel},
+            {"exponent", curve.exponent}};
 }
 
 Json scene_json(const SceneFindings& scene) {

@@ -53,6 +53,15 @@ TEST_CASE("curves are read as they were written") {
     CHECK_FALSE(curves.find("blur", "high"));
 }
 
+TEST_CASE("a time that grows faster than the picture is kept") {
+    const postfx::testing::TemporaryDirectory directory;
+    const std::filesystem::path file = directory.path() / "curves.json";
+    Curves curves = example();
+    curves.effects["glow"][1].time = {1, 2, 1.5};
+    std::ofstream(file) << curves_json(curves);
+    CHECK(postfx::read_curves(file).find("glow", "high")->time.at(4) == Approx(1 + 2 * 8));
+}
+
 TEST_CASE("what is wrong with a file of curves is told") {
     CHECK(refusal("\"clock\"", "\"clok\"") == "curves has no key \"clok\"; did you mean \"clock\"?");
     CHECK(refusal("\"driver\": \"4.5\",", "") == "curves: \"driver\" is missing");

@@ -68,11 +68,13 @@ TEST_CASE("a time curve goes through what lies on one, and is never negative") {
     const postfx::TimeCurve curve = fit_time({{0.25, 2.0}, {1, 5.0}});
     CHECK(curve.fixed_ms == Approx(1));
     CHECK(curve.ms_per_megapixel == Approx(4));
+    CHECK(curve.exponent == 1);
 
     const postfx::TimeCurve steep = fit_time({{0.25, 0.5}, {1, 5.0}});
     CHECK(steep.fixed_ms == 0);
-    CHECK(steep.ms_per_megapixel > 2);
-    CHECK(steep.ms_per_megapixel < 5);
+    CHECK(steep.at(0.25) == Approx(0.5));
+    CHECK(steep.at(1) == Approx(5));
+    CHECK(steep.exponent == Approx(std::log(10) / std::log(4)));
 
     const postfx::TimeCurve falling = fit_time({{0.25, 3.0}, {1, 2.0}});
     CHECK(falling.ms_per_megapixel == 0);

@@ -3,6 +3,7 @@
 
 #include <postfx/chain.hpp>
 
+#include <cmath>
 #include <filesystem>
 #include <map>
 #include <string>
@@ -14,7 +15,10 @@ namespace postfx {
 struct TimeCurve {
     double fixed_ms = 0;
     double ms_per_megapixel = 0;
-    double at(double megapixels) const { return fixed_ms + ms_per_megapixel * megapixels; }
+    double exponent = 1; ///< of the megapixels: above 1 where samples per pixel grow with the picture
+    double at(double megapixels) const {
+        return fixed_ms + ms_per_megapixel * std::pow(megapixels, exponent);
+    }
 };
 
 /// One level of an effect.

@@ -36,7 +36,7 @@ public:
         curves.driver = word(root, "curves", "driver");
         curves.clock = word(root, "curves", "clock");
         curves.made_by = word(root, "curves", "made_by");
-        expect_keys(root["base"], "base", {"fixed_ms", "ms_per_megapixel"});
+        expect_keys(root["base"], "base", {"fixed_ms", "ms_per_megapixel", "exponent"});
         curves.base = time(root["base"], "base");
         if (!root["effects"].is_object()) refuse("effects", "an object {effect: [levels]}", root["effects"]);
         for (const auto& [effect, levels] : root["effects"].items())
@@ -50,7 +50,8 @@ private:
         std::vector<LevelCurve> levels;
         for (const Json& item : json) {
             const std::string here = fmt::format("{}[{}]", at, levels.size());
-            expect_keys(item, here, {"level", "fixed_ms", "ms_per_megapixel", "error", "step_to_next"});
+            expect_keys(item, here,
+                        {"level", "fixed_ms", "ms_per_megapixel", "exponent", "error", "step_to_next"});
             LevelCurve level;
             level.level = word(item, here, "level");
             level.time = time(item, here);
@@ -70,7 +71,8 @@ private:
     }
 
     TimeCurve time(const Json& object, const std::string& at) const {
-        return {number(object, at, "fixed_ms"), number(object, at, "ms_per_megapixel")};
+        return {number(object, at, "fixed_ms"), number(object, at, "ms_per_megapixel"),
+                object.contains("exponent") ? number(object, at, "exponent") : 1};
     }
 
     void expect_keys(const Json& object, const std::string& at, const std::vector<std::string>& keys) const {
@@ -81,7 +83,9 @@ private:
                             fmt::format("{} has no key {}{}", at, quote(key), did_you_mean(key, keys)));
         }
         for (const std::string& key : keys) {
-            if (!object.contains(key)) throw Error(place_, fmt::format("{}: {} is missing", at, quote(key)));
+            const bool optional = key == "exponent"; // written only where it is not 1
+            if (!optional && !object.contains(key))
+                throw Error(place_, fmt::format("{}: {} is missing", at, quote(key)));
         }
     }
 
@@ -132,6 +136,7 @@ std::string curves_json(const Curves& curves) {
     const auto with_time = [](Json object, const TimeCurve& time) {
         object["fixed_ms"] = time.fixed_ms;
         object["ms_per_megapixel"] = time.ms_per_megapixel;
+        if (time.exponent != 1) object["exponent"] = time.exponent;
         return object;
     };
     Json effects = Json::object();
