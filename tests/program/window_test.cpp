@@ -28,6 +28,20 @@ Outcome under_display(std::vector<std::string> command) {
     return run_command(command);
 }
 
+/// `postfx view` in `directory`, with these keys pressed one after the other when it has run for so long.
+Outcome view_with_keys(const std::string& arguments, int seconds, const std::string& keys,
+                       const std::filesystem::path& directory) {
+    // Keys reach a window that has the focus; without a window manager somebody has to give it.
+    const std::string script =
+        program + (" view " + arguments)
+        + " & window=$(xdotool search --sync --onlyvisible --name postfx | head -n 1); "
+          "xdotool windowfocus --sync $window; sleep "
+        + std::to_string(seconds) + "; for key in " + keys
+        + "; do xdotool key $key; sleep 0.5; done; wait $!";
+    return run_command({"xvfb-run", "-a", "-s", "-screen 0 800x600x24", "timeout", "60", "sh", "-c", script},
+                       directory);
+}
+
 } // namespace
 
 TEST_CASE("the window shows what render writes") {
@@ -57,16 +71,7 @@ TEST_CASE("keys toggle effects, help, save a picture, pause and leave") {
         return;
     }
     const TemporaryDirectory scratch;
-    // Keys reach a window that has the focus; without a window manager somebody has to give it.
-    const std::string script =
-        program
-        + " view cornell --size 160x90 & "
-          "window=$(xdotool search --sync --onlyvisible --name postfx | head -n 1); "
-          "xdotool windowfocus --sync $window; "
-          "for key in h 2 2 p F12 Escape; do xdotool key $key; sleep 0.5; done; wait $!";
-    const Outcome outcome =
-        run_command({"xvfb-run", "-a", "-s", "-screen 0 800x600x24", "timeout", "60", "sh", "-c", script},
-                    scratch.path());
+    const Outcome outcome = view_with_keys("cornell --size 160x90", 0, "h 2 2 p F12 Escape", scratch.path());
     INFO(outcome.out << outcome.err);
     REQUIRE(outcome.status == 0);
     const std::size_t first_help = outcome.out.find("F12");
@@ -100,15 +105,9 @@ TEST_CASE("a budget is kept while the window is open") {
         "effects": {"ssao": [
             {"level": "low", "fixed_ms": 0.0001, "ms_per_megapixel": 0, "error": 0.2, "step_to_next": 0.02},
             {"level": "high", "fixed_ms": 0.0005, "ms_per_megapixel": 0, "error": 0.1, "step_to_next": 0}]}})");
-    const std::string script = program
-                               + " view cornell --effect ssao --effect tonemap --size 160x90 --curves "
-                                 "curves.json --by-curves --budget ms=0.001 & "
-                                 "window=$(xdotool search --sync --onlyvisible --name postfx | head -n 1); "
-                                 "xdotool windowfocus --sync $window; sleep 5; "
-                                 "for key in r t r Escape; do xdotool key $key; sleep 0.5; done; wait $!";
-    const Outcome outcome =
-        run_command({"xvfb-run", "-a", "-s", "-screen 0 800x600x24", "timeout", "60", "sh", "-c", script},
-                    scratch.path());
+    const Outcome outcome = view_with_keys("cornell --effect ssao --effect tonemap --size 160x90 --curves "
+                                           "curves.json --by-curves --budget ms=0.001",
+                                           5, "r t r Escape", scratch.path());
     INFO(outcome.out << outcome.err);
     REQUIRE(outcome.status == 0);
     CHECK_THAT(outcome.out, Catch::Contains("  ssao     high")); // to begin with
