@@ -181,53 +181,55 @@ private:
 
 constexpr const char* reading = "truncated or damaged EXR";
 
-} // namespace
-
-bool is_exr(std::string_view bytes) {
+bool recognises_exr(std::string_view bytes) {
     return bytes.starts_with("\x76\x2f\x31\x01");
 }
 
-ExrLayers read_exr(const Path& file, const std::string& bytes) {
-    return with_errors_translated(file, reading, [&] {
-        ExrFile exr(file, bytes);
-        const Layers layers = group_channels(exr.names());
-        const auto* main = main_layer(layers, exr.views());
-        if (!main)
-            fail(file, fmt::format("has no colour; its channels are {}", fmt::join(exr.names(), ", ")));
-        std::vector<std::vector<std::string>> lists = {main->second};
-        for (const auto& layer : layers)
-            if (&layer != main) lists.push_back(layer.second);
-        std::vector<Image> images = exr.read_all(lists);
+/// The layer that is asked for by name.
+Layers::value_type named_layer(const Path& file, const ExrFile& exr, const Layers& layers,
+                               const std::string& name) {
+    if (const auto found = layers.find(name); found != layers.end()) return *found;
+    if (std::count(exr.names().begin(), exr.names().end(), name)) return {name, {name}};
+    std::vector<std::string> candidates = exr.names();
+    for (const auto& [layer, channels] : layers)
+        if (!layer.empty()) candidates.push_back(layer);
+    fail(file, fmt::format("has no layer or channel \"{}\"{} (it has {})", name,
+                           did_you_mean(name, candidates), fmt::join(exr.names(), ", ")));
+}
 
-        ExrLayers read;
-        auto next = images.begin();
-        read.image = std::move(*next++);
-        for (const auto& layer : layers)
-            if (&layer != main) read.layers[layer.first] = std::move(*next++);
-        return read;
+Layers::value_type layer_for(const Path& file, const ExrFile& exr, const ImageRequest& request) {
+    const Layers layers = group_channels(exr.names());
+    if (!request.layer.empty()) return named_layer(file, exr, layers, request.layer);
+    const auto* found = request.role == Role::depth ? depth_layer(layers) : nullptr;
+    if (!found) found = main_layer(layers, exr.views());
+    if (!found)
+        fail(file, fmt::format("has no {}; its channels are {}", name_of(request.role),
+                               fmt::join(exr.names(), ", ")));
+    return *found;
+}
+
+ImageFile read_exr(const ImageSource& source, const ImageRequest& request) {
+    return with_errors_translated(source.name, reading, [&] {
+        ExrFile exr(source.name, source.bytes);
+        const Layers::value_type layer = layer_for(source.name, exr, request);
+        ImageFile file;
+        file.image = exr.read(layer.second);
+        file.layer = layer.first;
+        return file;
     });
 }
 
-Image read_exr_layer(const Path& file, const std::string& bytes, const std::string& layer) {
-    return with_errors_translated(file, reading, [&] {
-        ExrFile exr(file, bytes);
-        const Layers layers = group_channels(exr.names());
-        if (layer.empty()) {
-            const auto* obvious = depth_layer(layers);
-            if (!obvious) obvious = main_layer(layers, exr.views());
-            if (!obvious)
-                fail(file, fmt::format("name the layer to read; it has {}", fmt::join(exr.names(), ", ")));
-            return exr.read(obvious->second);
-        }
-        if (const auto found = layers.find(layer); found != layers.end()) return exr.read(found->second);
-        if (std::count(exr.names().begin(), exr.names().end(), layer)) return exr.read({layer});
-        std::vector<std::string> candidates = exr.names();
-        for (const auto& [name, channels] : layers)
-            if (!name.empty()) candidates.push_back(name);
-        fail(file, fmt::format("has no layer or channel \"{}\"{} (it has {})", layer,
-                               did_you_mean(layer, candidates), fmt::join(exr.names(), ", ")));
+ImageDescription describe_exr(const ImageSource& source) {
+    return with_errors_translated(source.name, reading, [&] {
+        const ExrFile exr(source.name, source.bytes);
+        ImageDescription description{.kind = formats::exr.name, .views = exr.views()};
+        return description;
     });
 }
+
+} // namespace
+
+const Format exr = {"OpenEXR", recognises_exr, read_exr, describe_exr};
 
 std::string exr_bytes(const Path& file, const Image& image, bool half_floats) {
     static const char* const names[5][4] = {{}, {"Y"}, {"Y", "A"}, {"R", "G", "B"}, {"R", "G", "B", "A"}};

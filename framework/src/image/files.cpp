@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <cerrno>
 #include <cstring>
 #include <fstream>
@@ -24,6 +25,25 @@ void check_size(const Path& file, long long width, long long height) {
     if (!sides_good || width * height > max_pixels)
         fail(file, fmt::format("absurd size: {} x {} pixels (1 to {} a side, at most {} in all)", width,
                                height, max_side, max_pixels));
+}
+
+void expect_no_layers(const ImageSource& source, const ImageRequest& request) {
+    for (const std::string& wish : {request.layer, request.view})
+        if (!wish.empty())
+            fail(source.name,
+                 fmt::format("only EXR files have layers and views, so there is no \"{}\" in it", wish));
+}
+
+ImageDescription description_of_one(const char* kind, const Image& image, const std::string& type) {
+    static const char* const names[5][4] = {{}, {"Y"}, {"Y", "A"}, {"R", "G", "B"}, {"R", "G", "B", "A"}};
+    LayerDescription layer;
+    for (int channel = 0; channel < image.channels; ++channel)
+        layer.channels.push_back({names[image.channels][channel], type});
+    ImageDescription description{
+        .kind = kind, .parts = {{.width = image.width, .height = image.height}}, .layers = {layer}};
+    for (const Role role : {Role::color, Role::depth, Role::normal, Role::emission, Role::ambient})
+        description.roles.push_back({.role = role});
+    return description;
 }
 
 } // namespace formats
@@ -51,51 +71,43 @@ std::string read_bytes(const Path& file) {
     return std::move(bytes).str();
 }
 
-[[noreturn]] void unknown_kind(const Path& file) {
-    fail(file, "is not an image of a known kind (PNG, JPEG, HDR, EXR, PFM)");
+/// Every kind of file that is known; the first one that recognises the bytes reads them.
+constexpr std::array known_formats = {&formats::png, &formats::jpeg, &formats::exr, &formats::hdr,
+                                      &formats::pfm};
+
+const formats::Format& format_of(const ImageSource& source) {
+    for (const formats::Format* format : known_formats)
+        if (format->recognises(source.bytes)) return *format;
+    std::vector<std::string> names;
+    for (const formats::Format* format : known_formats)
+        names.emplace_back(format->name);
+    fail(source.name, fmt::format("is not an image of a known kind ({})", fmt::join(names, ", ")));
 }
 
-/// Read the file and give its bytes to `read`. A picture that does not fit into memory is an Error like any
-/// other.
-template<class Read>
-auto with_bytes(const Path& file, Read read) {
+} // namespace
+
+ImageSource open_image(const std::filesystem::path& file) {
     try {
-        const std::string bytes = read_bytes(file);
-        return read(bytes);
+        return {file, read_bytes(file)};
     } catch (const std::bad_alloc&) {
         fail(file, "not enough memory for this picture");
     }
 }
 
-} // namespace
-
-ImageFile read_image(const std::filesystem::path& file) {
-    return with_bytes(file, [&](const std::string& bytes) -> ImageFile {
-        if (formats::is_png(bytes) || formats::is_jpeg(bytes)) {
-            formats::CodedImage coded = formats::read_png_or_jpeg(file, bytes, formats::Meaning::light);
-            return {std::move(coded.image), coded.was_8bit, {}};
-        }
-        if (formats::is_exr(bytes)) {
-            formats::ExrLayers exr = formats::read_exr(file, bytes);
-            return {std::move(exr.image), false, std::move(exr.layers)};
-        }
-        if (formats::is_hdr(bytes)) return {formats::read_hdr(file, bytes), false, {}};
-        if (formats::is_pfm(bytes)) return {formats::read_pfm(file, bytes), false, {}};
-        unknown_kind(file);
-    });
+ImageFile read_image(const ImageSource& source, const ImageRequest& request) {
+    try {
+        return format_of(source).read(source, request);
+    } catch (const std::bad_alloc&) {
+        fail(source.name, "not enough memory for this picture");
+    }
 }
 
-Image read_data(const std::filesystem::path& file, const std::string& layer) {
-    return with_bytes(file, [&](const std::string& bytes) -> Image {
-        if (formats::is_exr(bytes)) return formats::read_exr_layer(file, bytes, layer);
-        if (!layer.empty())
-            fail(file, fmt::format("only EXR files have layers, so there is no \"{}\" in it", layer));
-        if (formats::is_png(bytes) || formats::is_jpeg(bytes))
-            return formats::read_png_or_jpeg(file, bytes, formats::Meaning::data).image;
-        if (formats::is_hdr(bytes)) return formats::read_hdr(file, bytes);
-        if (formats::is_pfm(bytes)) return formats::read_pfm(file, bytes);
-        unknown_kind(file);
-    });
+ImageFile read_image(const std::filesystem::path& file, const ImageRequest& request) {
+    return read_image(open_image(file), request);
+}
+
+ImageDescription describe_image(const ImageSource& source) {
+    return format_of(source).describe(source);
 }
 
 } // namespace postfx
