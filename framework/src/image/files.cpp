@@ -1,14 +1,11 @@
+#include <base/read_file.hpp>
 #include <image/files.hpp>
 #include <image/formats.hpp>
 
 #include <fmt/format.h>
 
 #include <array>
-#include <cerrno>
-#include <cstring>
-#include <fstream>
 #include <new>
-#include <sstream>
 
 namespace postfx {
 namespace formats {
@@ -53,22 +50,11 @@ namespace {
 using formats::fail;
 using formats::Path;
 
-std::string read_bytes(const Path& file) {
-    std::error_code problem;
-    const auto type = std::filesystem::status(file, problem).type();
-    if (type == std::filesystem::file_type::not_found) fail(file, "no such file");
-    if (type == std::filesystem::file_type::directory) fail(file, "is a directory, not an image");
-    // Devices may never end; a pipe is what a shell's process substitution gives.
-    if (type != std::filesystem::file_type::regular && type != std::filesystem::file_type::fifo)
-        fail(file, problem ? "can't be read: " + problem.message() : "is no regular file");
-    errno = 0;
-    std::ifstream stream(file, std::ios::binary);
-    if (!stream) fail(file, fmt::format("can't be opened: {}", std::strerror(errno)));
-    std::ostringstream bytes;
-    bytes << stream.rdbuf();
-    if (stream.bad()) fail(file, fmt::format("can't be read: {}", std::strerror(errno)));
-    if (bytes.view().empty()) fail(file, "is empty");
-    return std::move(bytes).str();
+/// The largest file that is read: 2^28 pixels of four floats and further layers. A pipe or a device, whose size nobody
+/// knows before, may give an eighth of it.
+std::size_t max_bytes(const Path& file) {
+    constexpr std::size_t largest = std::size_t{1} << 33;
+    return is_stream(file) ? largest / 8 : largest;
 }
 
 /// Every kind of file that is known; the first one that recognises the bytes reads them.
@@ -88,7 +74,9 @@ const formats::Format& format_of(const ImageSource& source) {
 
 ImageSource open_image(const std::filesystem::path& file) {
     try {
-        return {file, read_bytes(file)};
+        ImageSource source{file, read_file(file, max_bytes(file), "an image")};
+        if (source.bytes.empty()) fail(file, "is empty");
+        return source;
     } catch (const std::bad_alloc&) {
         fail(file, "not enough memory for this picture");
     }
