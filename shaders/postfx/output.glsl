@@ -6,6 +6,11 @@
 // Stream of postfx_pixel_noise() that belongs to this file.
 const uint POSTFX_DITHER_STREAM = 0xd17e4u;
 
+// Light that was multiplied by alpha, without it. Where nothing covers the pixel there is nothing to divide by.
+vec3 postfx_divided_by_alpha(vec3 color, float alpha) {
+    return alpha > 0.0 ? color / alpha : color;
+}
+
 // Display-linear light, any value, to codes in 0..1. NaN is black, +infinity white.
 vec3 postfx_encode(vec3 color) {
     return postfx_srgb_encode(clamp(postfx_finite_or(color, 1.0), 0.0, 1.0));

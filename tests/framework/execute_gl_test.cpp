@@ -142,6 +142,27 @@ TEST_CASE("attachments and alpha come through") {
     CHECK(result.at(1, 1, 3) == 0.125f);
 }
 
+TEST_CASE("display codes of premultiplied light are those of the light without its alpha") {
+    const Quiet quiet;
+    Image color(3, 1, 4);
+    color.values = {0.5f,  0.5f, 0.5f,  0.5f,  // white, half covered
+                    0.25f, 0.0f, 0.0f,  0.0f,  // light without a surface stays as it is
+                    0.2f,  0.1f, 0.05f, 1.0f}; // covered wholly
+    Facts facts = facts_of(color);
+    facts.output = postfx::Output::display;
+    facts.color_is_8bit = true; // no dither
+    const Image multiplied = draw(Chain{}, color, facts);
+    facts.divide_by_alpha = true;
+    const Image divided = draw(Chain{}, color, facts);
+    for (int channel = 0; channel < 3; ++channel) {
+        CHECK(divided.at(0, 0, channel) == 1.0f);
+        CHECK(divided.at(1, 0, channel) == multiplied.at(1, 0, channel));
+        CHECK(divided.at(2, 0, channel) == multiplied.at(2, 0, channel));
+    }
+    CHECK(multiplied.at(0, 0, 0) == 188 / 255.0f); // sRGB of one half
+    CHECK(divided.at(0, 0, 3) == 128 / 255.0f);
+}
+
 TEST_CASE("what the host left switched on changes nothing") {
     const Quiet quiet;
     const Image color = test_picture();

@@ -40,7 +40,9 @@ struct Facts {
     Format working_format = Format::rgba16f;
     Output output = Output::display;
     bool color_is_8bit =
-        false;        ///< the picture came as 8-bit codes: with nothing to do, they are not dithered
+        false; ///< the picture came as 8-bit codes: with nothing to do, they are not dithered
+    /// Display output: the colour is multiplied by alpha, its codes are not to be. Where alpha is 0 it stays as it is.
+    bool divide_by_alpha = false;
     bool fuse = true; ///< false: every effect writes its own target
     /// Compile all values, sizes and the projection into the shaders: quicker passes, but whatever changes one of
     /// them makes a new program (tens of milliseconds). For pictures and for measuring, not while values are moved.

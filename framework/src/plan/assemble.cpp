@@ -389,11 +389,11 @@ std::string why_not_together(const Stage& a, const Stage& b) {
     return "";
 }
 
-ProgramSource assemble_compose(const std::vector<Stage>& stages, Encoding encoding, const Numbers& numbers) {
+ProgramSource assemble_compose(const std::vector<Stage>& stages, Finish finish, const Numbers& numbers) {
     Assembly assembly(ProgramKind::full_screen, numbers);
     for (const Stage& stage : stages)
         assembly.function(stage);
-    if (encoding != Encoding::none) assembly.library("output.glsl", Place{});
+    if (finish.encoding != Encoding::none) assembly.library("output.glsl", Place{});
     // Declared only now, so that no effect's function can name the chain's stored colour.
     assembly.generated(numbers_declaration(stages, numbers));
     assembly.generated("layout(binding = 0) uniform sampler2D u_color;\n");
@@ -406,8 +406,9 @@ ProgramSource assemble_compose(const std::vector<Stage>& stages, Encoding encodi
         assembly.generated(
             fmt::format("    color = {}(color, {});\n", stages[i].function(), arguments(stages, i)));
     }
-    if (encoding == Encoding::srgb) assembly.generated("    color = postfx_encode(color);\n");
-    if (encoding == Encoding::srgb_dithered)
+    if (finish.divide_by_alpha) assembly.generated("    color = postfx_divided_by_alpha(color, stored.a);\n");
+    if (finish.encoding == Encoding::srgb) assembly.generated("    color = postfx_encode(color);\n");
+    if (finish.encoding == Encoding::srgb_dithered)
         assembly.generated("    color = postfx_encode_dithered(color, pixel);\n");
     assembly.generated("    o_color = vec4(color, stored.a);\n}\n");
     return assembly.finish();

@@ -45,6 +45,12 @@ std::string why_not_together(const Stage& a, const Stage& b);
 
 enum class Encoding { none, srgb, srgb_dithered };
 
+/// What the last pass does to the chain's colour.
+struct Finish {
+    Encoding encoding = Encoding::none;
+    bool divide_by_alpha = false; ///< before it is encoded
+};
+
 /// How a pass's program gets its numbers, from uniform blocks or compiled in (Facts::fold), and gives some: does it
 /// count its texture reads (Facts::count_taps)?
 struct Numbers {
@@ -53,9 +59,9 @@ struct Numbers {
     FrameBlock frame; ///< when folded: what of it does not change from frame to frame is compiled in
 };
 
-/// The program of a fused pass: every stage's function in turn on the pixel's own colour, then the encoding.
+/// The program of a fused pass: every stage's function in turn on the pixel's own colour, then the finish.
 /// Texture units: 0 is the stored colour, then every stage's samplers in order.
-ProgramSource assemble_compose(const std::vector<Stage>& stages, Encoding encoding, const Numbers& numbers);
+ProgramSource assemble_compose(const std::vector<Stage>& stages, Finish finish, const Numbers& numbers);
 
 /// The program of a pass of its own. Texture units: the stage's samplers in order.
 ProgramSource assemble_fragment(const Stage& stage, int outputs, bool tiled, const Numbers& numbers);

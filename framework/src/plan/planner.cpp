@@ -94,8 +94,8 @@ public:
     }
 
     Plan finish() {
-        const Encoding encoding = final_encoding();
-        if (!waiting_.empty() || encoding != Encoding::none) flush(encoding, "the chain ends");
+        const Finish finish = final_finish();
+        if (!waiting_.empty() || finish.encoding != Encoding::none) flush(finish, "the chain ends");
         plan_.picture = one_image();
         drop_unread_passes(plan_);
         share_targets(plan_);
@@ -132,8 +132,7 @@ private:
         std::vector<std::vector<ImageRef>> outputs; // of each of the effect's passes
         for (const RecordedPass& pass : recording.passes) {
             if (recording.reads_color(pass) && !waiting_.empty()) {
-                flush(Encoding::none,
-                      fmt::format("{} samples the stored picture ({})", entry.name, pass.name));
+                flush(Finish{}, fmt::format("{} samples the stored picture ({})", entry.name, pass.name));
             }
             std::vector<PassInput> inputs;
             for (const RecordedInput& input : pass.inputs) {
@@ -192,7 +191,7 @@ private:
         const RecordedDecision& asked = *recording.decision;
         if (plan_.decisions.size() == max_decisions) return; // it runs in every frame
         if (recording.reads_color(asked.pass) && !waiting_.empty()) {
-            flush(Encoding::none, fmt::format("{} asks what is in the stored picture", entry.name));
+            flush(Finish{}, fmt::format("{} asks what is in the stored picture", entry.name));
         }
         std::vector<CensusInput> censuses;
         for (const RecordedInput& input : asked.pass.inputs)
@@ -298,19 +297,19 @@ private:
         if (apart.empty() && stage.decision >= 0 && decisions == most_decisions_in_a_pass) {
             apart = fmt::format("the frame would decide on more than {} effects of one pass", decisions);
         }
-        if (!apart.empty() && !waiting_.empty()) flush(Encoding::none, apart);
+        if (!apart.empty() && !waiting_.empty()) flush(Finish{}, apart);
         waiting_.push_back(std::move(stage));
     }
 
     /// Draw what waits as one pass; `because` is why nothing more can join it. Where the frame decides on some of
     /// it, there is a pass for each outcome, with the code of those that live.
-    void flush(Encoding encoding, const std::string& because) {
+    void flush(Finish finish, const std::string& because) {
         explain_fusion(because);
         std::vector<int> decisions;
         for (const WaitingStage& waiting : waiting_) {
             if (waiting.decision >= 0) decisions.push_back(waiting.decision);
         }
-        const Format format = encoding == Encoding::none ? facts_.working_format : Format::rgba8;
+        const Format format = finish.encoding == Encoding::none ? facts_.working_format : Format::rgba8;
         const ImageRef target = new_target(facts_.width, facts_.height, format);
         std::vector<Alternative> after = {{target, {}}};
         for (std::uint32_t outcome = 0; outcome < 1u << decisions.size(); ++outcome) {
@@ -323,14 +322,14 @@ private:
                          [&](const WaitingStage& waiting) {
                              return waiting.decision < 0 || (term.live >> waiting.decision & 1u) != 0;
                          });
-            if (living.empty() && encoding == Encoding::none) {
+            if (living.empty() && finish.encoding == Encoding::none) {
                 for (const Alternative& before : stored_) {
                     if (const auto holding = both(condition, before.condition))
                         after.push_back({before.image, *holding});
                 }
                 continue;
             }
-            emit(composed(living, encoding, target), condition);
+            emit(composed(living, finish, target), condition);
             if (!decisions.empty()) after.front().condition.push_back(term);
         }
         if (after.size() == 1) after.front().condition.clear(); // whatever the outcome
@@ -339,7 +338,7 @@ private:
         waiting_.clear();
     }
 
-    Pass composed(const std::vector<WaitingStage>& living, Encoding encoding, const ImageRef& target) {
+    Pass composed(const std::vector<WaitingStage>& living, Finish finish, const ImageRef& target) {
         std::vector<Stage> stages;
         Pass pass;
         pass.inputs.push_back({"color", the_picture, false});
@@ -349,12 +348,14 @@ private:
             pass.inputs.insert(pass.inputs.end(), waiting.inputs.begin(), waiting.inputs.end());
         }
         std::vector<std::string> parts = pass.effects;
-        if (encoding != Encoding::none) parts.emplace_back("output");
+        if (finish.encoding != Encoding::none) parts.emplace_back("output");
         if (parts.empty()) parts.emplace_back("copy");
         pass.name = fmt::format("{}", fmt::join(parts, "+"));
         const Numbers numbers = numbers_of(facts_.width, facts_.height);
-        pass.program = program(stages, fmt::format("compose {}", static_cast<int>(encoding)), numbers,
-                               [&] { return assemble_compose(stages, encoding, numbers); });
+        const std::string form =
+            fmt::format("compose {} {}", static_cast<int>(finish.encoding), finish.divide_by_alpha);
+        pass.program =
+            program(stages, form, numbers, [&] { return assemble_compose(stages, finish, numbers); });
         pass.format = plan_.targets[target.index].format;
         pass.outputs = {target};
         pass.width = facts_.width;
@@ -368,7 +369,7 @@ private:
         if (stored_.size() == 1) return stored_.front().image;
         const Alternative last = stored_.front();
         stored_.erase(stored_.begin());
-        emit(composed({}, Encoding::none, last.image), {});
+        emit(composed({}, Finish{}, last.image), {});
         return last.image;
     }
 
@@ -398,13 +399,14 @@ private:
         return found.source;
     }
 
-    Encoding final_encoding() const {
-        if (facts_.output == Output::linear) return Encoding::none;
+    Finish final_finish() const {
+        if (facts_.output == Output::linear) return {};
         const bool nothing_ran =
             std::all_of(plan_.effects.begin(), plan_.effects.end(),
                         [](const PlannedEffect& e) { return e.status == EffectStatus::skipped; });
         // Dithering codes that were 8 bits to begin with would only change them.
-        return facts_.color_is_8bit && nothing_ran ? Encoding::srgb : Encoding::srgb_dithered;
+        const bool keeps_codes = facts_.color_is_8bit && nothing_ran;
+        return {keeps_codes ? Encoding::srgb : Encoding::srgb_dithered, facts_.divide_by_alpha};
     }
 
     void warn_about_order(const ChainEntry& entry) {
