@@ -76,7 +76,6 @@ public:
         facts.camera = depth_options_.camera(facts.width, facts.height);
         facts.working_format = *format_by_name(working_);
         facts.fuse = !no_fuse_;
-        facts.fold = true;
         std::map<std::string, Image> images = attachments(facts);
         for (const auto& [name, image] : images)
             facts.attachments.push_back(name);

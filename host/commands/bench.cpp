@@ -46,8 +46,8 @@ public:
             ->default_str("")
             ->allow_extra_args(false);
         app.add_flag("--unfused", unfused_, "Measure every chain without fusion as well");
-        app.add_flag("--live", live_,
-                     "Measure every chain with its values in uniforms as well, as while they are moved");
+        app.add_flag("--folded", folded_,
+                     "Also measure the chains with all values compiled in, as a game would ship them");
         app.add_flag("--run-all", run_all_,
                      "Measure every chain with every enabled effect run, called for or not, as well");
         app.add_flag("--watch-nonfinite", watch_, "Measure every chain while it is watched for NaN as well");
@@ -71,7 +71,6 @@ public:
         ViewBounds bounds(scene);
         facts_ = scene_options_.facts(scene, bounds, linear_ ? Output::linear : Output::display);
         facts_.working_format = *format_by_name(format_);
-        facts_.fold = true;
         const GlSession session;
         SceneRenderers scenes(scene, facts_.width, facts_.height, scene_options_.time());
         frame_.camera = facts_.camera;
@@ -116,8 +115,8 @@ private:
             other.fuse = false;
             if (unfused_) add(" (unfused)", other);
             other = facts_;
-            other.fold = false;
-            if (live_) add(" (live)", other);
+            other.fold = true;
+            if (folded_) add(" (folded)", other);
             chain.skip = Skip::nothing;
             if (run_all_) add(" (run all)", facts_);
         }
@@ -256,7 +255,7 @@ private:
     std::vector<std::string> chains_, rivals_;
     std::string format_ = "rgba16f";
     int samples_ = 21;
-    bool unfused_ = false, live_ = false, watch_ = false, passes_ = false, with_scene_ = false,
+    bool unfused_ = false, folded_ = false, watch_ = false, passes_ = false, with_scene_ = false,
          run_all_ = false, linear_ = false, json_ = false;
 
     Facts facts_;

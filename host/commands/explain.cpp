@@ -50,10 +50,7 @@ public:
         std::optional<GlSession> session;
         if (measure_ || chain.budget) session.emplace();
         const std::optional<MetBudget> budget = met_budget(chain, scene, facts);
-        if (measure_) {
-            facts.fold = true;
-            return tell_measured(chain, scene, facts, budget, session->device().renderer);
-        }
+        if (measure_) return tell_measured(chain, scene, facts, budget, session->device().renderer);
         const Plan plan = Planner().plan(chain, facts);
         if (!shader_.empty()) return print_shader(plan);
         Report report = describe(plan);

@@ -72,7 +72,6 @@ public:
         ViewBounds bounds(scene);
         Facts facts = scene_options_.facts(scene, bounds, output);
         facts.working_format = *format_by_name(working_);
-        facts.fold = frames_ == 1; // a moving camera would make new programs for every frame
         check_parent(output_);
 
         const GlSession session;

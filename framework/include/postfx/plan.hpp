@@ -45,7 +45,7 @@ struct Facts {
     bool divide_by_alpha = false;
     bool fuse = true; ///< false: every effect writes its own target
     /// Compile all values, sizes and the projection into the shaders: quicker passes, but whatever changes one of
-    /// them makes a new program (tens of milliseconds). For pictures and for measuring, not while values are moved.
+    /// them makes a new program (tens of milliseconds each). For what is drawn thousands of times with the same values.
     bool fold = false;
     /// Programs count their texture reads (PassReport::taps): the same picture, more slowly. A plan whose reads can't
     /// all be counted is refused.
