@@ -72,6 +72,9 @@ typedef struct postfx_camera {
     double near_plane, far_plane;
     double depth_scale, depth_offset, sky_depth; /* see postfx/camera.hpp */
     double focus_distance;                       /* metres along the view axis; 0 = not known */
+    /* Where the optical axis lies in the picture, right and up from its middle, in half widths and half heights; finite,
+       not always within -1..1. 0, 0 with a lens that is not shifted. */
+    double principal_point[2];
 } postfx_camera;
 
 /* What the host knows of the scene without looking at pixels: bounds that hold for every pixel. */
