@@ -40,16 +40,21 @@ void write_png(const std::filesystem::path& file, int width, int height, int cha
 /// half-written. Throws Error naming the file.
 struct ExrOptions {
     bool half = false;
+    std::string kind{}; ///< "png", "exr", "hdr" or "pfm", whatever the file's ending; "" = by its ending
 };
 void write_image(const std::filesystem::path& file, const Image& image, const ExrOptions& options = {});
 
-/// Is `file`'s ending one that write_image knows? Throws Error (naming the endings) if not.
-void check_writable_kind(const std::filesystem::path& file);
+/// Is `file`'s ending, or `kind` where it is given, one that write_image knows? Throws Error (naming the kinds) if not.
+void check_writable_kind(const std::filesystem::path& file, const std::string& kind = "");
 /// .png: an 8-bit display-referred file.
-bool is_display_kind(const std::filesystem::path& file);
+bool is_display_kind(const std::filesystem::path& file, const std::string& kind = "");
 
-/// Write bytes so that `file` is either the old one or the whole new one. Links are followed, write
-/// protection is kept, devices and pipes are written to. Throws Error naming the file and the cause.
+/// Throws Error when the folder that `file`, or what it is a link to, would be written to is not there.
+void check_output_folder(const std::filesystem::path& file);
+
+/// Write bytes so that `file` is either the old one or the whole new one. Links are written through, to what is not
+/// there yet too; write protection is kept; devices and pipes are written to, and standard output when `file` is "-".
+/// Throws Error naming the file and the cause.
 void write_file_atomically(const std::filesystem::path& file, const std::string& bytes);
 
 } // namespace postfx
