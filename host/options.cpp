@@ -2,12 +2,16 @@
 
 #include "resources.hpp"
 
+#include <image/files.hpp>
+
 #include <postfx/error.hpp>
 
 #include <fmt/format.h>
 
 #include <charconv>
 #include <cstdio>
+
+#include <unistd.h>
 
 namespace postfx::host {
 
@@ -69,6 +73,26 @@ Chain ChainOptions::read(const Catalog& catalog) const {
 
 Chain read_chain_named(const std::string& name_or_path, const Catalog& catalog) {
     return read_chain(find_chain(name_or_path), catalog, {data_directory() / "configs/chains"});
+}
+
+void OutputOptions::declare(CLI::App& app, const std::string& help) {
+    app.add_option("-o,--output", path_, help + "; - is standard output")->required()->type_name("FILE");
+    app.add_option("--format", kind_, "Kind of picture, whatever FILE is called: png, exr, hdr or pfm")
+        ->type_name("KIND")
+        ->default_str("");
+}
+
+PictureFile OutputOptions::file() const {
+    const bool standard_output = path_ == "-" || path_ == "/dev/stdout" || path_ == "/dev/fd/1";
+    PictureFile file{standard_output ? "-" : path_, kind_};
+    if (standard_output && kind_.empty())
+        throw Error(
+            "--format is needed for a picture on standard output, which has no ending: png, exr, hdr or pfm");
+    if (standard_output && ::isatty(STDOUT_FILENO) != 0)
+        throw Error("standard output is a terminal, which shows no picture; send it to a file or a program");
+    check_writable_kind(file.path, file.kind);
+    check_output_folder(file.path);
+    return file;
 }
 
 Size parse_size(const std::string& text) {

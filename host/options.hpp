@@ -6,6 +6,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -54,6 +55,27 @@ private:
 
 /// A chain by its file or its name in configs/chains/; it may include those that are there.
 Chain read_chain_named(const std::string& name_or_path, const Catalog& catalog);
+
+/// Where a picture is written, and as what kind of file.
+struct PictureFile {
+    std::filesystem::path path;
+    std::string kind{}; ///< "png", "exr", ...; "" = as the path's ending says
+
+    /// Then nothing else may be printed there.
+    bool is_standard_output() const { return path == "-"; }
+};
+
+/// -o and --format.
+class OutputOptions {
+public:
+    /// `help`: of -o; the kinds of files and "-" are told behind it.
+    void declare(CLI::App& app, const std::string& help);
+    /// Throws Error for a kind that can't be written, a folder that is not there, and standard output on a terminal.
+    PictureFile file() const;
+
+private:
+    std::string path_, kind_;
+};
 
 /// "1280x720". Throws Error for anything else, or a side of 0 or above 16384.
 struct Size {

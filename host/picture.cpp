@@ -59,22 +59,23 @@ std::uint32_t ChainRunner::run(const Textures& textures, const FrameInputs& fram
     return executor_.run(inputs_, timing, watch);
 }
 
-Output output_for(const std::filesystem::path& file) {
-    check_writable_kind(file);
-    return is_display_kind(file) ? Output::display : Output::linear;
+Output output_for(const PictureFile& file) {
+    check_writable_kind(file.path, file.kind);
+    return is_display_kind(file.path, file.kind) ? Output::display : Output::linear;
 }
 
-void write_picture(ChainRunner& runner, const std::filesystem::path& file, bool keep_alpha) {
+void write_picture(ChainRunner& runner, const PictureFile& file, bool keep_alpha) {
     const int channels = keep_alpha ? 4 : 3;
     if (runner.facts().output == Output::linear) {
-        write_image(file, first_channels(runner.executor().read_picture(), channels));
+        write_image(file.path, first_channels(runner.executor().read_picture(), channels),
+                    {.kind = file.kind});
         return;
     }
     const Image codes = first_channels(runner.executor().read_picture(), channels);
     BasicImage<std::uint8_t> bytes(codes.width, codes.height, channels);
     std::transform(codes.values.begin(), codes.values.end(), bytes.values.begin(),
                    [](float code) { return static_cast<std::uint8_t>(std::lround(code * 255.0f)); });
-    write_codes(file, bytes);
+    write_codes(file.path, bytes, {.kind = file.kind});
 }
 
 ProgressBar::ProgressBar(std::string what, int total)

@@ -1,6 +1,8 @@
 // From a planned chain to a file.
 #pragma once
 
+#include "options.hpp"
+
 #include <postfx/postfx.hpp>
 
 #include <filesystem>
@@ -43,12 +45,12 @@ private:
     FrameInputs inputs_;
 };
 
-/// What the file's ending asks of the chain: codes for .png, linear light for the others. Throws Error for an
-/// ending that can't be written.
-Output output_for(const std::filesystem::path& file);
+/// What the file's kind asks of the chain: codes for PNG, linear light for the others. Throws Error for a kind that
+/// can't be written.
+Output output_for(const PictureFile& file);
 
-/// Write the last picture of `runner` to `file` by its ending, with 4 channels when `keep_alpha`.
-void write_picture(ChainRunner& runner, const std::filesystem::path& file, bool keep_alpha);
+/// Write the last picture of `runner` to `file`, with 4 channels when `keep_alpha`.
+void write_picture(ChainRunner& runner, const PictureFile& file, bool keep_alpha);
 
 /// A line that grows on a terminal's stderr, or nothing when stderr is no terminal. Finished by its
 /// destructor.

@@ -46,9 +46,7 @@ public:
             ->type_name("IMG");
         app.add_option("--ambient", ambient_, "The picture's share that occlusion may darken")
             ->type_name("IMG");
-        app.add_option("-o,--output", output_, "Result: .png (display), .exr, .hdr, .pfm (linear)")
-            ->required()
-            ->type_name("FILE");
+        output_options_.declare(app, "Result: .png (display), .exr, .hdr, .pfm (linear)");
         app.add_option("--working", working_, "Format of working targets")
             ->check(CLI::IsMember({"rgba16f", "rgba32f"}))
             ->capture_default_str();
@@ -64,7 +62,8 @@ public:
 
     Status run() override {
         Facts facts;
-        facts.output = output_for(output_);
+        const PictureFile output = output_options_.file();
+        facts.output = output_for(output);
         if (!chain_options_.given()) throw Error("nothing to apply: give --chain or --effect");
         const Catalog catalog = catalog_options_.load();
         Chain chain = chain_options_.read(catalog);
@@ -100,10 +99,10 @@ public:
         const Textures textures = upload(runner.attachments());
         runner.run(textures, frame, Timing::off, report_options_.watch());
         const bool has_alpha = color.image.channels == 4 || color.image.channels == 2;
-        write_picture(runner, output_, has_alpha);
+        write_picture(runner, output, has_alpha);
         if (report_options_.wants_times())
             runner.run(textures, frame, Timing::profile, report_options_.watch());
-        report_options_.tell(runner.executor().report(), budget, output_);
+        report_options_.tell(runner.executor().report(), budget, output);
         return Status::success;
     }
 
@@ -152,11 +151,12 @@ private:
                                                      color_, facts.width, facts.height));
     }
 
-    std::string color_, depth_, depth_layer_, normal_, emission_, ambient_, output_;
+    std::string color_, depth_, depth_layer_, normal_, emission_, ambient_;
     std::string working_ = "rgba32f";
     double time_ = 0;
     std::uint32_t frame_ = 0, seed_ = 0;
     bool no_fuse_ = false;
+    OutputOptions output_options_;
     DepthOptions depth_options_;
     ChainOptions chain_options_{""};
     CatalogOptions catalog_options_;

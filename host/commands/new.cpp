@@ -3,6 +3,7 @@
 #include "resources.hpp"
 #include "text_table.hpp"
 
+#include <base/read_file.hpp>
 #include <postfx/catalog.hpp>
 #include <postfx/error.hpp>
 
@@ -13,7 +14,6 @@
 #include <cerrno>
 #include <cstring>
 #include <fstream>
-#include <sstream>
 
 namespace fs = std::filesystem;
 
@@ -78,19 +78,13 @@ std::string replaced(std::string text, std::string_view from, const std::string&
     return text;
 }
 
+constexpr std::size_t max_template_bytes = std::size_t{1} << 20;
+
 /// The template's text or file name with the effect's name in all spellings.
 std::string named(std::string text, const std::string& name) {
     text = replaced(std::move(text), "my_effect", name);
     text = replaced(std::move(text), "MyEffect", pascal(name));
     return replaced(std::move(text), "MY_EFFECT", upper(name));
-}
-
-std::string read_text(const fs::path& file) {
-    std::ifstream in(file, std::ios::binary);
-    std::ostringstream text;
-    text << in.rdbuf();
-    if (!in || !text) throw Error(Place{.file = file.string()}, "can't be read");
-    return text.str();
 }
 
 void write_text(const fs::path& file, const std::string& text) {
@@ -118,7 +112,7 @@ void write_folder(const fs::path& folder, const std::string& name) {
         for (const fs::directory_entry& entry :
              fs::directory_iterator(data_directory() / "templates/effect")) {
             write_text(unfinished.folder / named(entry.path().filename().string(), name),
-                       named(read_text(entry.path()), name));
+                       named(read_file(entry.path(), max_template_bytes, "a template"), name));
         }
         fs::rename(unfinished.folder, folder);
     } catch (const fs::filesystem_error& error) {

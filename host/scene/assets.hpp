@@ -24,8 +24,9 @@ struct Model {
     std::vector<ModelPart> parts; ///< in the model's own space, its hierarchy applied
 };
 /// Read a model file with assimp (glTF, OBJ, PLY, ...). Throws Error naming the file, or the texture it
-/// lacks.
-Model load_model(const std::filesystem::path& file);
+/// lacks. Its format is told by its content. `content` is the whole file when that can't be read again, as it is a
+/// pipe; else "".
+Model load_model(const std::filesystem::path& file, const std::string& content = {});
 /// Does the file's ending belong to a format that load_model knows?
 bool is_model_file(const std::filesystem::path& file);
 

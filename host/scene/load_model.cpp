@@ -1,4 +1,7 @@
 #include "assets.hpp"
+#include "model_files.hpp"
+
+#include <base/read_file.hpp>
 
 #include <postfx/error.hpp>
 
@@ -58,7 +61,7 @@ private:
         } else {
             std::string path = name; // files written on Windows
             std::replace(path.begin(), path.end(), '\\', '/');
-            known = load_picture(file_.parent_path() / path, srgb);
+            known = load_picture(folder_of(file_) / path, srgb);
         }
         return known;
     }
@@ -153,14 +156,15 @@ private:
 
 } // namespace
 
-Model load_model(const std::filesystem::path& file) {
-    const Place place{file.string(), 0, 0, {}, {}};
-    if (!std::filesystem::is_regular_file(file)) throw Error(place, "there is no such model file");
+Model load_model(const std::filesystem::path& file, const std::string& content) {
+    const Place place{input_name(file), 0, 0, {}, {}};
+    if (content.empty()) expect_readable(file, "a model");
     Assimp::Importer importer;
     importer.SetPropertyFloat(AI_CONFIG_PP_GSN_MAX_SMOOTHING_ANGLE, 40); // sharper edges stay edges
-    const aiScene* scene = importer.ReadFile(
-        file.string(), aiProcess_Triangulate | aiProcess_GenSmoothNormals | aiProcess_JoinIdenticalVertices
-                           | aiProcess_SortByPType | aiProcess_ImproveCacheLocality);
+    const aiScene* scene =
+        read_by_content(importer, file, content,
+                        aiProcess_Triangulate | aiProcess_GenSmoothNormals | aiProcess_JoinIdenticalVertices
+                            | aiProcess_SortByPType | aiProcess_ImproveCacheLocality);
     if (!scene || !scene->mRootNode) {
         throw Error(place, fmt::format("can't read this model: {}", importer.GetErrorString()));
     }

@@ -1,5 +1,8 @@
 #include "assets.hpp"
+#include "file_kind.hpp"
 #include "scene.hpp"
+
+#include <base/read_file.hpp>
 
 #include <postfx/error.hpp>
 
@@ -88,12 +91,12 @@ double fitting_distance(const Bounds& bounds, glm::dvec3 from, double vertical_f
 
 /// A model alone, in front of grey: seen a little from above and the side and lit from the front left; or, when it is
 /// open to one side as a room is, looked at and lit through that.
-Scene scene_around_model(const std::filesystem::path& file) {
-    Model model = load_model(file);
+Scene scene_around_model(const std::filesystem::path& file, const std::string& content) {
+    Model model = load_model(file, content);
     Scene scene;
     scene.file = file;
     scene.name = file.stem().string();
-    scene.description = fmt::format("the model {}", file.filename().string());
+    scene.description = fmt::format("the model {}", input_name(file.filename()));
     scene.materials = std::move(model.materials);
     Node node;
     node.name = scene.name;
@@ -134,6 +137,33 @@ Scene scene_around_model(const std::filesystem::path& file) {
     return scene;
 }
 
+/// A stream's whole content, which comes only once; else "".
+std::string content_of_stream(const std::filesystem::path& file) {
+    constexpr std::size_t max_bytes = std::size_t{1} << 31; // a model with its textures, not an endless pipe
+    return is_stream(file) ? read_file(file, max_bytes, "a scene or a model") : std::string();
+}
+
+/// A scene or model of the user, by its content.
+Scene read_scene_or_model(const std::filesystem::path& file) {
+    constexpr const char* expected = "a scene (YAML) or a model (glTF, OBJ, ...)";
+    std::string content = content_of_stream(file);
+    const std::string start = content.empty() ? read_start(file, recognized_bytes, expected) : content;
+    std::error_code unknown;
+    const std::uintmax_t bytes = content.empty() ? std::filesystem::file_size(file, unknown) : content.size();
+    const FileKind kind = recognize(start, bytes, file);
+    const Place place{.file = input_name(file)};
+    if (start.empty()) throw Error(place, fmt::format("is empty, expected {}", expected));
+    if (kind.holds == FileKind::Holds::something_else) {
+        throw Error(place, kind.what.empty() ? fmt::format("expected {}", expected)
+                                             : fmt::format("is {}, expected {}", kind.what, expected));
+    }
+    Scene scene = kind.holds == FileKind::Holds::model ? scene_around_model(file, content)
+                  : content.empty()                    ? read_scene(file)
+                                                       : parse_scene(content, input_name(file));
+    scene.content = std::move(content);
+    return scene;
+}
+
 } // namespace
 
 std::vector<SceneEntry> list_scenes(const std::filesystem::path& scenes_directory) {
@@ -156,20 +186,15 @@ std::vector<SceneEntry> list_scenes(const std::filesystem::path& scenes_director
 
 Scene open_scene(const std::string& argument, const std::filesystem::path& scenes_directory) {
     const std::filesystem::path path(argument);
-    if (!path.has_extension() && !path.has_parent_path()) {
-        const std::filesystem::path named = scenes_directory / (argument + ".yaml");
-        if (std::filesystem::is_regular_file(named)) return read_scene(named);
-        std::vector<std::string> names;
-        for (const SceneEntry& entry : list_scenes(scenes_directory))
-            names.push_back(entry.name);
-        throw Error(fmt::format("there is no scene \"{}\"{}; known: {}", argument,
-                                did_you_mean(argument, names), fmt::join(names, ", ")));
-    }
-    if (!std::filesystem::is_regular_file(path))
-        throw Error({argument, 0, 0, {}, {}}, "there is no such file");
-    if (is_scene_file(path)) return read_scene(path);
-    if (is_model_file(path)) return scene_around_model(path);
-    throw Error({argument, 0, 0, {}, {}}, "expected a scene (.yaml) or a model (.gltf, .glb, .obj, ...)");
+    if (argument == "-" || path.has_extension() || path.has_parent_path()) return read_scene_or_model(path);
+    const std::filesystem::path named = scenes_directory / (argument + ".yaml");
+    if (std::filesystem::is_regular_file(named)) return read_scene(named);
+    if (std::filesystem::exists(path)) return read_scene_or_model(path);
+    std::vector<std::string> names;
+    for (const SceneEntry& entry : list_scenes(scenes_directory))
+        names.push_back(entry.name);
+    throw Error(fmt::format("there is no scene \"{}\"{}; known: {}", argument, did_you_mean(argument, names),
+                            fmt::join(names, ", ")));
 }
 
 } // namespace postfx::host

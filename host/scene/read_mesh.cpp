@@ -265,9 +265,7 @@ const std::vector<Maker>& makers() {
 
 std::vector<Part> add_model(const YamlValue& value, const std::optional<YamlValue>& material, Scene& scene,
                             Library& library) {
-    const std::filesystem::path file = std::filesystem::path(value.file()).parent_path() / value.text();
-    if (!std::filesystem::is_regular_file(file))
-        value.fail(fmt::format("there is no model file {}", file.string()));
+    const std::filesystem::path file = value.named_file("a model");
     const auto [known, added] = library.models.try_emplace(file.string());
     if (added) known->second = load_model(file);
     const Model& model = known->second;

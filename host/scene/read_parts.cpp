@@ -14,10 +14,7 @@ constexpr double high_light = 1e6; ///< brightest radiance that a file may name
 PicturePtr read_picture(const YamlMap& map, const std::string& key, bool srgb) {
     const auto name = map.find(key);
     if (!name) return nullptr;
-    const std::filesystem::path file = std::filesystem::path(name->file()).parent_path() / name->text();
-    if (!std::filesystem::is_regular_file(file))
-        name->fail(fmt::format("there is no texture file {}", file.string()));
-    return load_picture(file, srgb);
+    return load_picture(name->named_file("a texture"), srgb);
 }
 
 glm::dvec3 unit(const YamlValue& value) {

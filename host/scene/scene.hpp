@@ -133,6 +133,7 @@ struct SceneFacts {
 struct Scene {
     std::string name, description;
     std::filesystem::path file;
+    std::string content; ///< of a file that can't be read again, as it is a pipe; else ""
     std::vector<Material> materials;
     std::vector<Path> paths;
     std::vector<Node> nodes;
@@ -155,8 +156,8 @@ struct Scene {
 /// turned a little rather than undefined.
 glm::dmat4 look_at_matrix(glm::dvec3 position, glm::dvec3 look_at, glm::dvec3 up);
 
-/// What the user means by SCENE: a name in `scenes_directory`, a scene file (.yaml, .yml), or a model file,
-/// which gets a camera and light of its own. Throws Error.
+/// What the user means by SCENE: a name in `scenes_directory`, a scene file, a model file, which gets a camera and
+/// light of its own, or "-", either of them on standard input. Which of them a file is its content says. Throws Error.
 Scene open_scene(const std::string& argument, const std::filesystem::path& scenes_directory);
 
 struct SceneEntry {

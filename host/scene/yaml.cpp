@@ -1,5 +1,7 @@
 #include "yaml.hpp"
 
+#include <base/read_file.hpp>
+
 #include <postfx/error.hpp>
 
 #include <fmt/format.h>
@@ -60,6 +62,16 @@ bool YamlValue::toggle() const {
 std::string YamlValue::text() const {
     if (!node_->IsScalar()) fail(fmt::format("expected a text, found {}", described(*node_)));
     return node_->Scalar();
+}
+
+std::filesystem::path YamlValue::named_file(std::string_view expected) const {
+    std::filesystem::path file = folder_of(*file_) / text();
+    try {
+        expect_readable(file, expected);
+    } catch (const Error& error) {
+        fail(fmt::format("can't read {}: {}", error.place().file, error.message()));
+    }
+    return file;
 }
 
 std::string YamlValue::choice(const std::vector<std::string>& words) const {

@@ -4,10 +4,11 @@
 #include <glm/glm.hpp>
 #include <yaml-cpp/yaml.h>
 
-#include <initializer_list>
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -34,6 +35,9 @@ public:
     int integer(Range range) const;
     bool toggle() const;
     std::string text() const;
+    /// The file of that name, seen from the document's own folder; `expected` says what it ought to be. It is there and
+    /// no folder.
+    std::filesystem::path named_file(std::string_view expected) const;
     /// One of these words.
     std::string choice(const std::vector<std::string>& words) const;
     /// [x, y, z]; every number within range.

@@ -391,7 +391,7 @@ TEST_CASE("Places that can't be written to") {
     const TemporaryDirectory directory;
     const Image image(2, 2, 3);
     const auto inside_missing = directory / "missing/a.png";
-    CHECK(error_of(inside_missing, [&] { write_image(inside_missing, image); }).find("No such file")
+    CHECK(error_of(inside_missing, [&] { write_image(inside_missing, image); }).find("there is no folder")
           != std::string::npos);
     std::filesystem::create_directory(directory / "folder.png");
     const auto folder = directory / "folder.png";
@@ -427,4 +427,46 @@ TEST_CASE("Links are followed, names may be as long as names get") {
     const mode_t mask = umask(0);
     umask(mask);
     CHECK(std::filesystem::status(directory / longest).permissions() == std::filesystem::perms(0666 & ~mask));
+}
+
+TEST_CASE("Links to what is not there yet are written through") {
+    namespace fs = std::filesystem;
+    const TemporaryDirectory directory;
+    fs::create_directory(directory / "renders");
+    fs::create_symlink("renders/real.pfm", directory / "dangling.pfm");
+    fs::create_symlink("dangling.pfm", directory / "chain.pfm");
+    write_image(directory / "chain.pfm", Image(1, 1, 1, 2.0f));
+    CHECK(fs::is_symlink(directory / "chain.pfm"));
+    CHECK(fs::is_symlink(directory / "dangling.pfm"));
+    CHECK(fs::is_regular_file(fs::symlink_status(directory / "renders/real.pfm")));
+    CHECK(read_image(directory / "chain.pfm").image.values == std::vector<float>{2.0f});
+
+    // ".." counts from where a link to a folder leads, not from where it stands.
+    fs::create_directories(directory / "far/away");
+    fs::create_directory_symlink(directory / "far/away", directory / "near");
+    fs::create_symlink("../up.pfm", directory / "near/up.pfm");
+    write_image(directory / "near/up.pfm", Image(1, 1, 1, 3.0f));
+    CHECK(read_image(directory / "far/up.pfm").image.values == std::vector<float>{3.0f});
+
+    fs::create_symlink("nowhere/real.pfm", directory / "lost.pfm");
+    const std::string lost =
+        error_of(directory / "lost.pfm", [&] { write_image(directory / "lost.pfm", Image(1, 1, 1)); });
+    CHECK(lost.find("there is no folder " + (directory / "nowhere").string()) != std::string::npos);
+    CHECK(fs::is_symlink(directory / "lost.pfm"));
+
+    fs::create_symlink("b.pfm", directory / "a.pfm");
+    fs::create_symlink("a.pfm", directory / "b.pfm");
+    error_of(directory / "a.pfm", [&] { write_image(directory / "a.pfm", Image(1, 1, 1)); });
+    CHECK(fs::is_symlink(directory / "a.pfm"));
+}
+
+TEST_CASE("A kind that is named goes before the ending") {
+    const TemporaryDirectory directory;
+    const Image image(2, 1, 1, 2.0f);
+    write_image(directory / "picture.png", image, {.kind = "pfm"});
+    CHECK(same_values(read_image(directory / "picture.png").image, image));
+    CHECK_NOTHROW(check_writable_kind("-", "exr"));
+    CHECK(is_display_kind("a.exr", "png"));
+    CHECK(error_of("a.png", [] { check_writable_kind("a.png", "gif"); }).find("its kind is \".gif\"")
+          != std::string::npos);
 }

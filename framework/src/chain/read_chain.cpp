@@ -1,7 +1,7 @@
 #include <postfx/chain.hpp>
 
+#include "base/read_file.hpp"
 #include "chain/read_value.hpp"
-#include "chain/text_file.hpp"
 #include "chain/yaml_document.hpp"
 
 #include <fmt/format.h>
@@ -286,7 +286,7 @@ private:
         }
         std::string yaml;
         try {
-            yaml = read_text_file(file, YamlLimits::bytes);
+            yaml = read_file(file, YamlLimits::bytes, "a chain");
         } catch (const Error& error) {
             throw Error(include.place,
                         fmt::format("can't include {}: {}", quote(include.text), error.message()));
@@ -296,7 +296,7 @@ private:
 
     /// Beside the including file, else in the include directories; where it is nowhere, beside the file.
     fs::path find_included(const std::string& name) const {
-        fs::path beside = (open_.back().shown.parent_path() / name).lexically_normal();
+        fs::path beside = (folder_of(open_.back().shown) / name).lexically_normal();
         if (fs::exists(beside)) return beside;
         for (const fs::path& directory : include_directories_) {
             if (fs::exists(directory / name)) return directory / name;
@@ -325,7 +325,8 @@ private:
 
 Chain read_chain(const fs::path& file, const Catalog& catalog,
                  const std::vector<fs::path>& include_directories) {
-    return parse_chain(read_text_file(file, YamlLimits::bytes), file, catalog, include_directories);
+    return parse_chain(read_file(file, YamlLimits::bytes, "a chain"), input_name(file), catalog,
+                       include_directories);
 }
 
 Chain parse_chain(const std::string& yaml, const fs::path& origin, const Catalog& catalog,

@@ -92,6 +92,7 @@ struct WriteOptions {
     bool half = false;     ///< .exr: half instead of float; beyond 65504 becomes infinity
     int bits = 8;          ///< .png: 8 or 16
     double quality = 0.92; ///< .jpg: 0..1
+    std::string kind{};    ///< "png", "exr", ..., whatever the file's ending; "" = by its ending
 };
 
 /// 8-bit sRGB codes, 1 to 4 channels, bottom row first, written as PNG, or without alpha as JPEG, by the ending.
@@ -103,13 +104,17 @@ void write_codes(const std::filesystem::path& file, const BasicImage<std::uint8_
 /// beside and renamed, so an existing file is never left half-written. Throws Error naming the file.
 void write_image(const std::filesystem::path& file, const Image& image, const WriteOptions& options = {});
 
-/// Is `file`'s ending one that write_image knows? Throws Error (naming the endings) if not.
-void check_writable_kind(const std::filesystem::path& file);
+/// Is `file`'s ending, or `kind` where it is given, one that write_image knows? Throws Error (naming the kinds) if not.
+void check_writable_kind(const std::filesystem::path& file, const std::string& kind = "");
 /// .png, .jpg: a display-referred file.
-bool is_display_kind(const std::filesystem::path& file);
+bool is_display_kind(const std::filesystem::path& file, const std::string& kind = "");
 
-/// Write bytes so that `file` is either the old one or the whole new one. Links are followed, write
-/// protection is kept, devices and pipes are written to. Throws Error naming the file and the cause.
+/// Throws Error when the folder that `file`, or what it is a link to, would be written to is not there.
+void check_output_folder(const std::filesystem::path& file);
+
+/// Write bytes so that `file` is either the old one or the whole new one. Links are written through, to what is not
+/// there yet too; write protection is kept; devices and pipes are written to, and standard output when `file` is "-".
+/// Throws Error naming the file and the cause.
 void write_file_atomically(const std::filesystem::path& file, const std::string& bytes);
 
 } // namespace postfx

@@ -9,6 +9,7 @@
 #include <cctype>
 #include <cerrno>
 #include <cmath>
+#include <cstdio>
 #include <cstring>
 #include <utility>
 
@@ -66,6 +67,24 @@ Path name_beside(const Path& file) {
     return file.parent_path() / fmt::format(".postfx-{}-{}.new", ::getpid(), count++);
 }
 
+/// What a chain of links leads to, which need not be there; `file` itself when it is no link.
+Path end_of_links(const Path& file) {
+    constexpr int most_links = 40; // as Linux has it
+    Path target = file;
+    std::error_code ignored;
+    for (int links = 0; std::filesystem::is_symlink(target, ignored); ++links) {
+        if (links == most_links) fail_writing(file, ELOOP);
+        target = target.parent_path() / std::filesystem::read_symlink(target);
+    }
+    return target;
+}
+
+void write_to_standard_output(std::string_view bytes) {
+    std::fflush(stdout);
+    OutputDescriptor output(::dup(STDOUT_FILENO));
+    if (!output.is_open() || !output.write_and_close(bytes)) fail_writing("standard output", errno);
+}
+
 void check_image(const Path& file, int width, int height, int channels, std::size_t values) {
     formats::check_size(file, width, height);
     if (channels < 1 || channels > 4)
@@ -97,8 +116,13 @@ BasicImage<std::uint8_t> display_codes(const Image& image) {
     return codes;
 }
 
+/// ".png", ".exr", ...
+std::string ending_of_kind(const Path& file, const std::string& kind) {
+    return kind.empty() ? ending_of(file) : "." + kind;
+}
+
 std::string encoded(const Path& file, const Image& image, const WriteOptions& options) {
-    const std::string ending = ending_of(file);
+    const std::string ending = ending_of_kind(file, options.kind);
     if (ending == ".png") return formats::png_bytes(file, display_codes(image));
     if (ending == ".exr") return formats::exr_bytes(file, image, options.half);
     if (ending == ".hdr") return formats::hdr_bytes(with_color_channels(image, 3));
@@ -107,16 +131,18 @@ std::string encoded(const Path& file, const Image& image, const WriteOptions& op
 
 } // namespace
 
-void check_writable_kind(const std::filesystem::path& file) {
+void check_writable_kind(const std::filesystem::path& file, const std::string& kind) {
     static const std::vector<std::string> known = {".png", ".exr", ".hdr", ".pfm"};
-    const std::string ending = ending_of(file);
+    const std::string ending = ending_of_kind(file, kind);
     if (std::find(known.begin(), known.end(), ending) != known.end()) return;
-    fail(file, fmt::format("can't be written: its ending is \"{}\", expected one of {}{}", ending,
-                           fmt::join(known, ", "), ending.empty() ? "" : did_you_mean(ending, known)));
+    fail(file == "-" ? "standard output" : file,
+         fmt::format("can't be written: its {} is \"{}\", expected one of {}{}",
+                     kind.empty() ? "ending" : "kind", ending, fmt::join(known, ", "),
+                     ending.empty() ? "" : did_you_mean(ending, known)));
 }
 
-bool is_display_kind(const std::filesystem::path& file) {
-    return ending_of(file) == ".png";
+bool is_display_kind(const std::filesystem::path& file, const std::string& kind) {
+    return ending_of_kind(file, kind) == ".png";
 }
 
 void write_codes(const std::filesystem::path& file, const BasicImage<std::uint8_t>& codes,
@@ -126,12 +152,26 @@ void write_codes(const std::filesystem::path& file, const BasicImage<std::uint8_
 }
 
 void write_image(const std::filesystem::path& file, const Image& image, const WriteOptions& options) {
-    check_writable_kind(file);
+    check_writable_kind(file, options.kind);
     check_image(file, image.width, image.height, image.channels, image.values.size());
     write_file_atomically(file, encoded(file, image, options));
 }
 
+void check_output_folder(const std::filesystem::path& file) {
+    if (file == "-") return;
+    const Path target = end_of_links(file);
+    const Path folder = target.parent_path();
+    if (folder.empty() || std::filesystem::is_directory(folder)) return;
+    fail(file, fmt::format("can't be written: {}there is no folder {}",
+                           target == file ? "" : fmt::format("it is a link to {}, and ", target.string()),
+                           folder.string()));
+}
+
 void write_file_atomically(const std::filesystem::path& file, const std::string& bytes) {
+    if (file == "-") {
+        write_to_standard_output(bytes);
+        return;
+    }
     std::error_code ignored;
     const auto type = std::filesystem::status(file, ignored).type();
     using std::filesystem::file_type;
@@ -144,9 +184,8 @@ void write_file_atomically(const std::filesystem::path& file, const std::string&
     }
     // Renaming would replace a protected file all the same, or a link instead of what it points at.
     if (type == file_type::regular && ::access(file.c_str(), W_OK) != 0) fail_writing(file, errno);
-    const Path target =
-        std::filesystem::is_symlink(file, ignored) ? std::filesystem::weakly_canonical(file) : file;
-
+    check_output_folder(file);
+    const Path target = end_of_links(file);
     const Path beside = name_beside(target);
     OutputDescriptor output(::open(beside.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666));
     if (!output.is_open()) fail_writing(file, errno);
