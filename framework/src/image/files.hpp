@@ -32,6 +32,9 @@ struct ImageRequest {
     std::string
         layer{}; ///< a layer or channel by its name (EXR); "" = by the conventions of the programs that write it
     std::string view{}; ///< a stereo view by its name; "" = the file's default one
+    std::string
+        beside{}; ///< the layer of this file that is taken for the colour: what was rendered with it comes
+                  ///< first (EXR)
     Adaptation adaptation = Adaptation::none;
 };
 
@@ -52,6 +55,9 @@ struct DepthScale {
     double at_zero = 0, at_one = 1; ///< what the samples 0 and 1 stand for, linear between
 };
 
+/// What the axes of a normal are.
+enum class NormalSpace { view, world };
+
 /// What the file says of the camera.
 struct ShotData {
     std::optional<double> focal_length_mm,
@@ -71,6 +77,8 @@ struct ImageFile {
     std::string layer{}, view{}; ///< what was taken, "" where the file has only one
     ShotData shot{};
     std::optional<DepthScale> depth_scale{}; ///< role depth only
+    std::optional<NormalSpace>
+        normal_space{};                  ///< role normal only: by the layer's name, or who wrote the file
     std::vector<std::string> honoured{}; ///< what the file says of its pixels and was followed, one line each
     std::vector<std::string> warnings{}; ///< what was brought into shape or had to be left out, one line each
 };
