@@ -18,10 +18,6 @@ bool recognises_exr(std::string_view bytes) {
     return bytes.starts_with("\x76\x2f\x31\x01");
 }
 
-LayerWish wish_of(const ImageRequest& request) {
-    return {request.role, request.layer, request.view, request.beside};
-}
-
 /// Deep data has no single value per pixel; nothing else is refused for its sake.
 std::string deep_parts(const ExrFile& exr) {
     std::string text;
@@ -30,18 +26,6 @@ std::string deep_parts(const ExrFile& exr) {
             text += fmt::format("{}{}holds deep data, which has no single value per pixel",
                                 text.empty() ? "" : "; ", exr.called(part));
     return text;
-}
-
-ExrLayer wanted_layer(const ImageSource& source, const ExrFile& exr, const ImageRequest& request,
-                      ImageFile& file) {
-    const std::string deep = deep_parts(exr);
-    if (exr.contents().layers.empty())
-        fail(source.name, deep.empty() ? "has no channels" : deep + "; flatten it first");
-    const LayerChoice choice = choose_layer(exr.contents(), wish_of(request));
-    if (!choice.layer) fail(source.name, choice.refusal + (deep.empty() ? "" : "; " + deep));
-    if (!deep.empty()) file.warnings.push_back(deep + ", and was left out");
-    file.warnings.insert(file.warnings.end(), choice.warnings.begin(), choice.warnings.end());
-    return *choice.layer;
 }
 
 Coding coding_of(const Imf::Header& header, const ExrLayer& layer) {
@@ -95,7 +79,7 @@ ImageFile read_exr(const ImageSource& source, const ImageRequest& request) {
     return with_exr_errors(source.name, reading_exr, [&] {
         ExrFile exr(source);
         ImageFile file;
-        const ExrLayer layer = wanted_layer(source, exr, request, file);
+        const ExrLayer layer = layer_for(source, exr, request, file.warnings);
         const Imf::Header& header = exr.header(layer.part);
         file.image = exr.read(layer);
         file.coding = coding_of(header, layer);
@@ -180,6 +164,19 @@ ImageDescription describe_exr(const ImageSource& source) {
 }
 
 } // namespace
+
+ExrLayer layer_for(const ImageSource& source, const ExrFile& exr, const ImageRequest& request,
+                   std::vector<std::string>& warnings) {
+    const std::string deep = deep_parts(exr);
+    if (exr.contents().layers.empty())
+        fail(source.name, deep.empty() ? "has no channels" : deep + "; flatten it first");
+    const LayerChoice choice =
+        choose_layer(exr.contents(), {request.role, request.layer, request.view, request.beside});
+    if (!choice.layer) fail(source.name, choice.refusal + (deep.empty() ? "" : "; " + deep));
+    if (!deep.empty()) warnings.push_back(deep + ", and was left out");
+    warnings.insert(warnings.end(), choice.warnings.begin(), choice.warnings.end());
+    return *choice.layer;
+}
 
 const Format exr = {"OpenEXR", recognises_exr, read_exr, describe_exr};
 

@@ -4,10 +4,10 @@
 #include <image/exr_layers.hpp>
 #include <image/formats.hpp>
 
+#include <Imath/ImathBox.h>
 #include <OpenEXR/ImfIO.h>
 #include <OpenEXR/ImfMultiPartInputFile.h>
 #include <OpenEXR/ImfPixelType.h>
-#include <Imath/ImathBox.h>
 
 #include <algorithm>
 #include <cstring>
@@ -91,6 +91,10 @@ private:
     ExrWindow display_;
     ExrContents contents_;
 };
+
+/// The layer for the request. Throws Error with the reason why there is none; adds to `warnings` what was left out.
+ExrLayer layer_for(const ImageSource& source, const ExrFile& exr, const ImageRequest& request,
+                   std::vector<std::string>& warnings);
 
 /// "half", "float", "uint".
 const char* type_name(Imf::PixelType type);

@@ -93,8 +93,18 @@ ImageFile read_image(const std::filesystem::path& file, const ImageRequest& requ
 /// What is in the file, without its pixels, and what would be taken in which role.
 ImageDescription describe_image(const ImageSource& source);
 
+/// The file that a picture was taken from, and how it was asked for.
+struct Origin {
+    const ImageSource* source = nullptr;
+    ImageRequest request{};
+};
+
 /// How a file is written.
 struct WriteOptions {
+    /// .exr: write the origin, if it is an EXR, with the picture in place of the one that was taken: other layers,
+    /// parts, views, windows and attributes stay as they are, bit for bit, and so do pixels that have not changed.
+    /// `half` is then ignored: channels keep their types.
+    Origin origin{};
     bool half = false;     ///< .exr: half instead of float; beyond 65504 becomes infinity
     int bits = 8;          ///< .png: 8 or 16
     double quality = 0.92; ///< .jpg: 0..1
@@ -106,8 +116,10 @@ void write_codes(const std::filesystem::path& file, const BasicImage<std::uint8_
 
 /// By ending: .exr, .pfm: 1 to 4 channels of float, bits kept; .hdr: 8 bits of mantissa, nothing negative; .png, .jpg:
 /// sRGB-encoded and rounded, clamped to [0, 1], NaN is 0. HDR, PFM and JPEG have no alpha: it is left out. Written
-/// beside and renamed, so an existing file is never left half-written. Throws Error naming the file.
-void write_image(const std::filesystem::path& file, const Image& image, const WriteOptions& options = {});
+/// beside and renamed, so an existing file is never left half-written. Throws Error naming the file. Returns what could
+/// not be kept of the origin, one line each.
+std::vector<std::string> write_image(const std::filesystem::path& file, const Image& image,
+                                     const WriteOptions& options = {});
 
 /// Is `file`'s ending one that write_image knows? Throws Error (naming the endings) if not.
 void check_writable_kind(const std::filesystem::path& file);

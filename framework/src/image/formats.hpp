@@ -82,4 +82,9 @@ std::string pfm_bytes(const Image& image);
 /// Channels Y, YA, RGB or RGBA; half or float.
 std::string exr_bytes(const Path& file, const Image& image, bool half);
 
+/// The origin, an EXR, with `image` (3 or 4 channels, Rec. 709) where its picture was; see WriteOptions. Adds to `remarks`
+/// what could not be kept.
+std::string exr_bytes_carrying(const Path& file, const Image& image, const Origin& origin,
+                               std::vector<std::string>& remarks);
+
 } // namespace postfx::formats

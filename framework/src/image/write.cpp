@@ -97,8 +97,15 @@ BasicImage<std::uint8_t> display_codes(const Image& image) {
     return codes;
 }
 
-std::string encoded(const Path& file, const Image& image, const WriteOptions& options) {
+bool carries(const WriteOptions& options) {
+    return options.origin.source && formats::exr.recognises(options.origin.source->bytes);
+}
+
+std::string encoded(const Path& file, const Image& image, const WriteOptions& options,
+                    std::vector<std::string>& remarks) {
     const std::string ending = ending_of(file);
+    if (ending == ".exr" && carries(options))
+        return formats::exr_bytes_carrying(file, image, options.origin, remarks);
     if (ending == ".png") return formats::png_bytes(file, display_codes(image));
     if (ending == ".exr") return formats::exr_bytes(file, image, options.half);
     if (ending == ".hdr") return formats::hdr_bytes(with_color_channels(image, 3));
@@ -125,10 +132,13 @@ void write_codes(const std::filesystem::path& file, const BasicImage<std::uint8_
     write_file_atomically(file, formats::png_bytes(file, codes));
 }
 
-void write_image(const std::filesystem::path& file, const Image& image, const WriteOptions& options) {
+std::vector<std::string> write_image(const std::filesystem::path& file, const Image& image,
+                                     const WriteOptions& options) {
     check_writable_kind(file);
     check_image(file, image.width, image.height, image.channels, image.values.size());
-    write_file_atomically(file, encoded(file, image, options));
+    std::vector<std::string> remarks;
+    write_file_atomically(file, encoded(file, image, options, remarks));
+    return remarks;
 }
 
 void write_file_atomically(const std::filesystem::path& file, const std::string& bytes) {
