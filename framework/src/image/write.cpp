@@ -121,8 +121,15 @@ std::string ending_of_kind(const Path& file, const std::string& kind) {
     return kind.empty() ? ending_of(file) : "." + kind;
 }
 
-std::string encoded(const Path& file, const Image& image, const WriteOptions& options) {
+bool carries(const WriteOptions& options) {
+    return options.origin.source && formats::exr.recognises(options.origin.source->bytes);
+}
+
+std::string encoded(const Path& file, const Image& image, const WriteOptions& options,
+                    std::vector<std::string>& remarks) {
     const std::string ending = ending_of_kind(file, options.kind);
+    if (ending == ".exr" && carries(options))
+        return formats::exr_bytes_carrying(file, image, options.origin, remarks);
     if (ending == ".png") return formats::png_bytes(file, display_codes(image));
     if (ending == ".exr") return formats::exr_bytes(file, image, options.half);
     if (ending == ".hdr") return formats::hdr_bytes(with_color_channels(image, 3));
@@ -151,10 +158,13 @@ void write_codes(const std::filesystem::path& file, const BasicImage<std::uint8_
     write_file_atomically(file, formats::png_bytes(file, codes));
 }
 
-void write_image(const std::filesystem::path& file, const Image& image, const WriteOptions& options) {
+std::vector<std::string> write_image(const std::filesystem::path& file, const Image& image,
+                                     const WriteOptions& options) {
     check_writable_kind(file, options.kind);
     check_image(file, image.width, image.height, image.channels, image.values.size());
-    write_file_atomically(file, encoded(file, image, options));
+    std::vector<std::string> remarks;
+    write_file_atomically(file, encoded(file, image, options, remarks));
+    return remarks;
 }
 
 void check_output_folder(const std::filesystem::path& file) {
