@@ -175,12 +175,16 @@ constexpr const char* triangle_ply =
     "end_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
 constexpr const char* triangle_stl = "solid t\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\n"
                                      "vertex 0 1 0\nendloop\nendfacet\nendsolid t\n";
-constexpr const char* triangle_gltf =
-    R"({"buffers": [{"byteLength": 36, "uri": "data:application/octet-stream;base64,)"
-    R"(AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"}], "bufferViews": [{"buffer": 0, "byteLength": 36}],)"
-    R"( "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3", "min": [0, 0, 0],)"
-    R"( "max": [1, 1, 0]}], "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}], "nodes": [{"mesh": 0}],)"
-    R"( "scenes": [{"nodes": [0]}], "scene": 0, "asset": {"version": "2.0"}})";
+/// The corners are 36 bytes; `uri` says where they are, or nothing of those that come along.
+std::string triangle_gltf(const std::string& uri) {
+    return R"({"buffers": [{)" + uri
+           + R"("byteLength": 36}], "bufferViews": [{"buffer": 0, "byteLength": 36}],)"
+             R"( "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3",)"
+             R"( "min": [0, 0, 0], "max": [1, 1, 0]}], "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],)"
+             R"( "nodes": [{"mesh": 0}], "scenes": [{"nodes": [0]}], "scene": 0, "asset": {"version": "2.0"}})";
+}
+const std::string triangle_in_gltf = triangle_gltf(R"("uri": "data:application/octet-stream;base64,)"
+                                                   R"(AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA", )");
 
 std::string little_endian(std::uint32_t x) {
     std::string bytes;
@@ -189,12 +193,17 @@ std::string little_endian(std::uint32_t x) {
     return bytes;
 }
 
-/// The glTF file in one binary chunk of JSON.
-std::string triangle_glb() {
-    std::string json = triangle_gltf;
+/// Its JSON and its corners in one file.
+std::string triangle_in_glb() {
+    std::string json = triangle_gltf("");
     json.resize((json.size() + 3) / 4 * 4, ' ');
-    const auto length = static_cast<std::uint32_t>(json.size());
-    return "glTF" + little_endian(2) + little_endian(20 + length) + little_endian(length) + "JSON" + json;
+    constexpr float corners[] = {0, 0, 0, 1, 0, 0, 0, 1, 0};
+    const std::string bytes(reinterpret_cast<const char*>(corners), sizeof(corners));
+    const auto chunk = [](const std::string& type, const std::string& content) {
+        return little_endian(static_cast<std::uint32_t>(content.size())) + type + content;
+    };
+    const std::string chunks = chunk("JSON", json) + chunk(std::string("BIN\0", 4), bytes);
+    return "glTF" + little_endian(2) + little_endian(static_cast<std::uint32_t>(12 + chunks.size())) + chunks;
 }
 
 } // namespace
@@ -205,11 +214,11 @@ TEST_CASE("whether a file is a scene or a model, and of which format, its conten
     const std::vector<std::pair<std::string, std::string>> models = {{"obj", triangle_obj},
                                                                      {"ply", triangle_ply},
                                                                      {"stl", triangle_stl},
-                                                                     {"gltf", triangle_gltf},
-                                                                     {"glb", triangle_glb()}};
+                                                                     {"gltf", triangle_in_gltf},
+                                                                     {"glb", triangle_in_glb()}};
     for (const auto& [format, content] : models) {
         for (const std::string& ending : {"." + format, std::string(".dat"), std::string(),
-                                         std::string(".obj"), std::string(".yaml"), std::string(".glb")}) {
+                                          std::string(".obj"), std::string(".yaml"), std::string(".glb")}) {
             const std::filesystem::path file = folder / ("model" + ending);
             INFO(format << " as " << file.filename());
             put(file, content);
@@ -241,15 +250,14 @@ TEST_CASE("scenes and models come through pipes") {
         const std::filesystem::path pipe = folder / "pipe";
         std::filesystem::remove(pipe);
         REQUIRE(::mkfifo(pipe.c_str(), 0600) == 0);
-        std::thread writer([&] { put(pipe, content); });
+        const std::jthread writer([&] { put(pipe, content); });
         const Scene scene = open_scene(pipe.string(), scenes);
-        writer.join();
         CHECK(scene.content == content);
         return scene.facts().triangles;
     };
     CHECK(through_pipe("nodes:\n  - {mesh: {box: {}}}\n  - {mesh: {model: triangle.obj}}\n") == 13);
     for (const std::string& model :
-         {std::string(triangle_obj), std::string(triangle_ply), std::string(triangle_gltf), triangle_glb()})
+         {std::string(triangle_obj), std::string(triangle_ply), triangle_in_gltf, triangle_in_glb()})
         CHECK(through_pipe(model) == 1);
 }
 
