@@ -138,12 +138,42 @@ TEST_CASE("a mistake in a scene file is one message with its place") {
         {"nodes: [&a {light: {spot: {shadow: true}}}, *a, *a, *a, *a]",
          "s.yaml:1:20: at most 4 lights of a scene cast shadows"},
         {"include: missing.yaml", "s.yaml:1:10: can't read missing.yaml: no such file"},
-        {"nodes: [", "s.yaml:1:1: end of sequence flow not found"},
+        {"nodes: [", "s.yaml:1:8: this is not YAML: the \"[\" that opens here is never closed"},
+        {"nodes:\n  - {name: \"a}\n  - {name: \"b\"}",
+         "s.yaml:2:12: this is not YAML: the quote that opens here is not closed on its line"},
+        {"nodes:\n\t- {name: a}", "s.yaml:2:1: this is not YAML: a tab indents this line; YAML wants spaces"},
+        {"nodes:\n  - mesh {box: {}}",
+         "s.yaml:2:5: this is not YAML: a colon is missing behind \"mesh\""},
+        {"nodes:\n  - mesh: {box: {size 1}}",
+         "s.yaml:2:18: unknown key \"size 1\" in box; a colon is missing behind \"size\""},
+        {"camera:\n  near 1",
+         "s.yaml:2:3: expected a map, found \"near 1\"; a colon is missing behind \"near\""},
+        {"nodes:\n  - light: {spot: {shadow: yes}}",
+         "s.yaml:2:28: expected true or false, found \"yes\"; write true"},
+        {"camera:\n  near: 0,5",
+         "s.yaml:2:9: expected a number, found \"0,5\"; decimals are written with a point: 0.5"},
+        {"camera: {near: 0,5}",
+         "s.yaml:1:16: expected a number, found \"0,5\"; decimals are written with a point: 0.5"},
+        {"camera: {position: [0,5, 1, 2]}",
+         "s.yaml:1:20: expected [x, y, z], found a list; decimals are written with a point: 0.5"},
+        {"camera: {near: '1'}", "s.yaml:1:16: expected a number, found \"1\""},
+        {"camera: {near: \x04}", "s.yaml:1:16: expected plain text in UTF-8, found the byte 0x04"},
     };
     for (const Row& row : rows) {
         INFO(row.yaml);
         CHECK(message_of(row.yaml) == row.message);
     }
+}
+
+TEST_CASE("a scene's words and numbers are those of YAML's core schema") {
+    for (const char* word : {"true", "True", "TRUE"}) {
+        const Scene scene =
+            parse_scene(std::string("nodes: [{light: {spot: {shadow: ") + word + "}}}]", "s.yaml");
+        CHECK(scene.lights.at(0).casts_shadow);
+    }
+    for (const auto& [text, value] : std::vector<std::pair<std::string, double>>{
+             {".5", 0.5}, {"1e-1", 0.1}, {"0x10", 16}, {"0o17", 15}, {"017", 17}})
+        CHECK(parse_scene("camera: {near: " + text + "}", "s.yaml").camera.near_plane == value);
 }
 
 TEST_CASE("an unknown scene name gives the nearest, a missing file its name") {
