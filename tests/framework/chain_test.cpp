@@ -206,6 +206,8 @@ TEST_CASE("every mistake has its message") {
          R"(c.yaml:2:3: this is not YAML: a colon is missing behind "shade")"},
         {"effects\n- shade: {radius: 1}",
          R"(c.yaml:1:1: this is not YAML: a colon is missing behind "effects")"},
+        {"effects\n  - shade: {radius: 1}",
+         R"(c.yaml:1:1: this is not YAML: a colon is missing behind "effects")"},
         {"effects [shade]",
          R"(c.yaml:1:1: a chain: expected "effects:" and a list, or "include:" and a file, found "effects [shade]"; a colon is missing behind "effects")"},
         {"effects: [shade: {radius 1}]",

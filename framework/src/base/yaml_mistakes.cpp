@@ -190,7 +190,9 @@ std::optional<YamlMistake> find_word_before_bracket(const Line& line) {
 /// `bloom` on a line of its own, with its settings indented below.
 std::optional<YamlMistake> find_word_above(string_view text, const Line& line) {
     const std::optional<Line> above = line_before(text, line);
-    if (!above || !is_word(above->content()) || line.indent() <= above->indent()) return std::nullopt;
+    if (!above || !is_word(above->content())) return std::nullopt;
+    const bool is_item = trimmed(line.text).starts_with("- "); // may stand as far left as its key
+    if (line.indent() < above->indent() + (is_item ? 0 : 1)) return std::nullopt;
     return colon_missing(above->offset_of(above->content()), above->content());
 }
 
