@@ -39,6 +39,10 @@ foreach(export postfx-plugin-targets postfx-library-targets)
   install(EXPORT ${export} NAMESPACE postfx:: DESTINATION ${config_dir})
 endforeach()
 
+# Everything that `cmake --install` copies and that effects elsewhere link with: what ./run builds.
+add_custom_target(postfx_installed)
+add_dependencies(postfx_installed postfx_program postfx_effects ${libraries})
+
 # The same file for both; only the place of our CMake functions differs.
 set(POSTFX_FUNCTIONS_DIR ${PROJECT_SOURCE_DIR}/cmake)
 configure_file(cmake/postfx-config.cmake.in ${PROJECT_BINARY_DIR}/postfx-config.cmake @ONLY)

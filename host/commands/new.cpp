@@ -120,6 +120,14 @@ void write_folder(const fs::path& folder, const std::string& name) {
     }
 }
 
+/// A file's name as one word of a command line.
+std::string for_shell(const std::string& name) {
+    constexpr std::string_view plain =
+        "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_./+@%,=-";
+    if (name.find_first_not_of(plain) == std::string::npos) return name;
+    return "'" + replaced(name, "'", "'\\''") + "'";
+}
+
 /// What find_package(postfx) needs to be told: the build tree or the installation that this program is of.
 std::string cmake_directory() {
     std::error_code ignored;
@@ -168,12 +176,12 @@ private:
                               2));
         fmt::print(
             "\nBuild and test it:\n"
-            "  cmake -S {0} -B {0}/build -Dpostfx_DIR={1}\n"
+            "  cmake -S {0} -B {0}/build -G Ninja -Dpostfx_DIR={1}\n"
             "  cmake --build {0}/build\n"
             "  ctest --test-dir {0}/build --output-on-failure\n"
             "\nUse it:\n"
             "  postfx apply --color PICTURE --plugin-dir {0}/build/postfx_plugins --effect {2} -o {2}.png\n",
-            folder, cmake_directory(), name_);
+            for_shell(folder), for_shell(cmake_directory()), name_);
     }
 
     std::string name_, folder_;

@@ -45,11 +45,15 @@ public:
     glm::dvec2 pair(Range range) const;
     /// [r, g, b], or one number for grey.
     glm::vec3 color(double high) const;
+    /// What a message says was found in place of a map with these keys.
+    std::string found(const std::vector<std::string>& keys) const;
     std::vector<YamlValue> list() const;
     /// The entries of a map in the file's order; a key that stands there twice is an error.
     std::vector<std::pair<YamlValue, YamlValue>> entries() const;
 
 private:
+    void refuse_decimal_comma(const YAML::Node& before, const YAML::Node& after) const;
+
     /// Behind a pointer because assigning a YAML::Node changes the document that it stands in.
     std::shared_ptr<const YAML::Node> node_;
     std::shared_ptr<const std::string> file_;

@@ -138,12 +138,42 @@ TEST_CASE("a mistake in a scene file is one message with its place") {
         {"nodes: [&a {light: {spot: {shadow: true}}}, *a, *a, *a, *a]",
          "s.yaml:1:20: at most 4 lights of a scene cast shadows"},
         {"include: missing.yaml", "s.yaml:1:10: can't read missing.yaml: no such file"},
-        {"nodes: [", "s.yaml:1:1: end of sequence flow not found"},
+        {"nodes: [", "s.yaml:1:8: this is not YAML: the \"[\" that opens here is never closed"},
+        {"nodes:\n  - {name: \"a}\n  - {name: \"b\"}",
+         "s.yaml:2:12: this is not YAML: the quote that opens here is not closed on its line"},
+        {"nodes:\n\t- {name: a}", "s.yaml:2:1: this is not YAML: a tab indents this line; YAML wants spaces"},
+        {"nodes:\n  - mesh {box: {}}",
+         "s.yaml:2:5: this is not YAML: a colon is missing behind \"mesh\""},
+        {"nodes:\n  - mesh: {box: {size 1}}",
+         "s.yaml:2:18: unknown key \"size 1\" in box; a colon is missing behind \"size\""},
+        {"camera:\n  near 1",
+         "s.yaml:2:3: expected a map, found \"near 1\"; a colon is missing behind \"near\""},
+        {"nodes:\n  - light: {spot: {shadow: yes}}",
+         "s.yaml:2:28: expected true or false, found \"yes\"; write true"},
+        {"camera:\n  near: 0,5",
+         "s.yaml:2:9: expected a number, found \"0,5\"; decimals are written with a point: 0.5"},
+        {"camera: {near: 0,5}",
+         "s.yaml:1:16: expected a number, found \"0,5\"; decimals are written with a point: 0.5"},
+        {"camera: {position: [0,5, 1, 2]}",
+         "s.yaml:1:20: expected [x, y, z], found a list; decimals are written with a point: 0.5"},
+        {"camera: {near: '1'}", "s.yaml:1:16: expected a number, found \"1\""},
+        {"camera: {near: \x04}", "s.yaml:1:16: expected plain text in UTF-8, found the byte 0x04"},
     };
     for (const Row& row : rows) {
         INFO(row.yaml);
         CHECK(message_of(row.yaml) == row.message);
     }
+}
+
+TEST_CASE("a scene's words and numbers are those of YAML's core schema") {
+    for (const char* word : {"true", "True", "TRUE"}) {
+        const Scene scene =
+            parse_scene(std::string("nodes: [{light: {spot: {shadow: ") + word + "}}}]", "s.yaml");
+        CHECK(scene.lights.at(0).casts_shadow);
+    }
+    for (const auto& [text, value] : std::vector<std::pair<std::string, double>>{
+             {".5", 0.5}, {"1e-1", 0.1}, {"0x10", 16}, {"0o17", 15}, {"017", 17}})
+        CHECK(parse_scene("camera: {near: " + text + "}", "s.yaml").camera.near_plane == value);
 }
 
 TEST_CASE("an unknown scene name gives the nearest, a missing file its name") {
@@ -175,12 +205,16 @@ constexpr const char* triangle_ply =
     "end_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
 constexpr const char* triangle_stl = "solid t\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\n"
                                      "vertex 0 1 0\nendloop\nendfacet\nendsolid t\n";
-constexpr const char* triangle_gltf =
-    R"({"buffers": [{"byteLength": 36, "uri": "data:application/octet-stream;base64,)"
-    R"(AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"}], "bufferViews": [{"buffer": 0, "byteLength": 36}],)"
-    R"( "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3", "min": [0, 0, 0],)"
-    R"( "max": [1, 1, 0]}], "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}], "nodes": [{"mesh": 0}],)"
-    R"( "scenes": [{"nodes": [0]}], "scene": 0, "asset": {"version": "2.0"}})";
+/// The corners are 36 bytes; `uri` says where they are, or nothing of those that come along.
+std::string triangle_gltf(const std::string& uri) {
+    return R"({"buffers": [{)" + uri
+           + R"("byteLength": 36}], "bufferViews": [{"buffer": 0, "byteLength": 36}],)"
+             R"( "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3",)"
+             R"( "min": [0, 0, 0], "max": [1, 1, 0]}], "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],)"
+             R"( "nodes": [{"mesh": 0}], "scenes": [{"nodes": [0]}], "scene": 0, "asset": {"version": "2.0"}})";
+}
+const std::string triangle_in_gltf = triangle_gltf(R"("uri": "data:application/octet-stream;base64,)"
+                                                   R"(AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA", )");
 
 std::string little_endian(std::uint32_t x) {
     std::string bytes;
@@ -189,12 +223,17 @@ std::string little_endian(std::uint32_t x) {
     return bytes;
 }
 
-/// The glTF file in one binary chunk of JSON.
-std::string triangle_glb() {
-    std::string json = triangle_gltf;
+/// Its JSON and its corners in one file.
+std::string triangle_in_glb() {
+    std::string json = triangle_gltf("");
     json.resize((json.size() + 3) / 4 * 4, ' ');
-    const auto length = static_cast<std::uint32_t>(json.size());
-    return "glTF" + little_endian(2) + little_endian(20 + length) + little_endian(length) + "JSON" + json;
+    constexpr float corners[] = {0, 0, 0, 1, 0, 0, 0, 1, 0};
+    const std::string bytes(reinterpret_cast<const char*>(corners), sizeof(corners));
+    const auto chunk = [](const std::string& type, const std::string& content) {
+        return little_endian(static_cast<std::uint32_t>(content.size())) + type + content;
+    };
+    const std::string chunks = chunk("JSON", json) + chunk(std::string("BIN\0", 4), bytes);
+    return "glTF" + little_endian(2) + little_endian(static_cast<std::uint32_t>(12 + chunks.size())) + chunks;
 }
 
 } // namespace
@@ -205,11 +244,11 @@ TEST_CASE("whether a file is a scene or a model, and of which format, its conten
     const std::vector<std::pair<std::string, std::string>> models = {{"obj", triangle_obj},
                                                                      {"ply", triangle_ply},
                                                                      {"stl", triangle_stl},
-                                                                     {"gltf", triangle_gltf},
-                                                                     {"glb", triangle_glb()}};
+                                                                     {"gltf", triangle_in_gltf},
+                                                                     {"glb", triangle_in_glb()}};
     for (const auto& [format, content] : models) {
         for (const std::string& ending : {"." + format, std::string(".dat"), std::string(),
-                                         std::string(".obj"), std::string(".yaml"), std::string(".glb")}) {
+                                          std::string(".obj"), std::string(".yaml"), std::string(".glb")}) {
             const std::filesystem::path file = folder / ("model" + ending);
             INFO(format << " as " << file.filename());
             put(file, content);
@@ -241,15 +280,14 @@ TEST_CASE("scenes and models come through pipes") {
         const std::filesystem::path pipe = folder / "pipe";
         std::filesystem::remove(pipe);
         REQUIRE(::mkfifo(pipe.c_str(), 0600) == 0);
-        std::thread writer([&] { put(pipe, content); });
+        const std::jthread writer([&] { put(pipe, content); });
         const Scene scene = open_scene(pipe.string(), scenes);
-        writer.join();
         CHECK(scene.content == content);
         return scene.facts().triangles;
     };
     CHECK(through_pipe("nodes:\n  - {mesh: {box: {}}}\n  - {mesh: {model: triangle.obj}}\n") == 13);
     for (const std::string& model :
-         {std::string(triangle_obj), std::string(triangle_ply), std::string(triangle_gltf), triangle_glb()})
+         {std::string(triangle_obj), std::string(triangle_ply), triangle_in_gltf, triangle_in_glb()})
         CHECK(through_pipe(model) == 1);
 }
 
