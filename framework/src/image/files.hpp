@@ -1,6 +1,7 @@
 // Image files to and from float pixels: who asks says in which role, and gets what the file says of its pixels.
 #pragma once
 
+#include <image/color_space.hpp>
 #include <image/description.hpp>
 #include <image/role.hpp>
 
@@ -24,9 +25,6 @@ struct ImageSource {
 /// Read a regular file, a pipe, or standard input ("-"). Throws Error naming the file: missing, a directory, empty,
 /// unreadable, too large.
 ImageSource open_image(const std::filesystem::path& file);
-
-/// White of another colour space stays what it is (none), or becomes the white of Rec. 709 (bradford).
-enum class Adaptation { none, bradford };
 
 /// What is asked of a file.
 struct ImageRequest {
