@@ -56,10 +56,14 @@ ImageDescription description_of_one(const char* kind, const Image& image, const 
 
 extern const Format png, jpeg, exr, hdr, pfm;
 
-// ---- PNG and JPEG
+// ---- PNG and JPEG, sRGB
 
-/// `codes`: 1 to 4 channels of 8 bits.
+/// `codes`: 1 to 4 channels of 8 or 16 bits.
 std::string png_bytes(const Path& file, const BasicImage<std::uint8_t>& codes);
+std::string png_bytes(const Path& file, const BasicImage<std::uint16_t>& codes);
+
+/// `codes`: 1 or 3 channels; `quality`: 0 to 1.
+std::string jpeg_bytes(const Path& file, const BasicImage<std::uint8_t>& codes, double quality);
 
 // ---- Radiance HDR
 
