@@ -316,7 +316,7 @@ TEST_CASE("What is no image is refused") {
     CHECK(read_error(directory / "missing.png").find("no such file") != std::string::npos);
     CHECK(read_error(directory.path()).find("directory") != std::string::npos);
     CHECK(read_error(directory / "empty.png").find("empty") != std::string::npos);
-    CHECK(read_error(directory / "words.png").find("PNG, JPEG, OpenEXR, HDR, PFM") != std::string::npos);
+    CHECK(read_error(directory / "words.png").find("PNG, JPEG, OpenEXR, HDR, PFM, TGA") != std::string::npos);
     CHECK(read_error("/dev/zero").find("larger") != std::string::npos);
     const auto file = directory / "a.png";
     CHECK(error_of(file, [&] { read_image(file, {.role = Role::data, .layer = "Z"}).image; }).find("layers")

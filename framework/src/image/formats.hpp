@@ -55,6 +55,8 @@ void expect_no_layers(const ImageSource& source, const ImageRequest& request);
 ImageDescription description_of_one(const char* kind, const Image& image, const std::string& type);
 
 extern const Format png, jpeg, exr, hdr, pfm;
+/// Those that only stb_image reads; last, as one of them (TGA) has no signature.
+extern const Format stb;
 
 // ---- PNG and JPEG, sRGB
 

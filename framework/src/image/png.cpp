@@ -37,6 +37,7 @@ void read_bytes(png_structp png, png_bytep to, std::size_t size) {
 
 void note_warning(png_structp png, png_const_charp message) {
     constexpr std::size_t most = 8;
+    if (std::string_view(message).find("CRC") != std::string_view::npos) return; // png_chunks tells of it
     auto& warnings = static_cast<Input*>(png_get_error_ptr(png))->warnings;
     if (warnings.size() < most) warnings.push_back(std::string("libpng: ") + message);
 }
