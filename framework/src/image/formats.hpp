@@ -59,11 +59,17 @@ void expect_no_layers(const ImageSource& source, const ImageRequest& request);
 ImageDescription description_of_one(const char* kind, const Image& image, const std::string& type);
 
 extern const Format png, jpeg, exr, hdr, pfm;
+/// Those that only stb_image reads; last, as one of them (TGA) has no signature.
+extern const Format stb;
 
-// ---- PNG and JPEG
+// ---- PNG and JPEG, sRGB
 
-/// `codes`: 1 to 4 channels of 8 bits.
+/// `codes`: 1 to 4 channels of 8 or 16 bits.
 std::string png_bytes(const Path& file, const BasicImage<std::uint8_t>& codes);
+std::string png_bytes(const Path& file, const BasicImage<std::uint16_t>& codes);
+
+/// `codes`: 1 or 3 channels; `quality`: 0 to 1.
+std::string jpeg_bytes(const Path& file, const BasicImage<std::uint8_t>& codes, double quality);
 
 // ---- Radiance HDR
 

@@ -11,6 +11,7 @@
 #include <cmath>
 #include <cstdio>
 #include <cstring>
+#include <limits>
 #include <utility>
 
 #include <fcntl.h>
@@ -95,8 +96,9 @@ void check_image(const Path& file, int width, int height, int channels, std::siz
 }
 
 /// The same picture with other channels: colour is repeated from one channel or cut to it, alpha is left out.
-Image with_color_channels(const Image& image, int channels) {
-    Image colors(image.width, image.height, channels);
+template<class Number>
+BasicImage<Number> with_color_channels(const BasicImage<Number>& image, int channels) {
+    BasicImage<Number> colors(image.width, image.height, channels);
     for (std::size_t pixel = 0; pixel < image.pixel_count(); ++pixel)
         for (int channel = 0; channel < channels; ++channel)
             colors.values[pixel * channels + channel] =
@@ -104,14 +106,21 @@ Image with_color_channels(const Image& image, int channels) {
     return colors;
 }
 
-BasicImage<std::uint8_t> display_codes(const Image& image) {
+/// The channels of what has no alpha: 1 for grey, else 3.
+int color_channels(int channels) {
+    return channels < 3 ? 1 : 3;
+}
+
+template<class Code>
+BasicImage<Code> display_codes(const Image& image) {
+    constexpr double largest = std::numeric_limits<Code>::max();
     const bool has_alpha = image.channels == 2 || image.channels == 4;
-    BasicImage<std::uint8_t> codes(image.width, image.height, image.channels);
+    BasicImage<Code> codes(image.width, image.height, image.channels);
     for (std::size_t i = 0; i < image.values.size(); ++i) {
         const bool is_alpha = has_alpha && static_cast<int>(i % image.channels) == image.channels - 1;
         const double value = image.values[i];
         const double encoded = !is_alpha ? linear_to_srgb(value) : value > 0 ? std::min(value, 1.0) : 0.0;
-        codes.values[i] = static_cast<std::uint8_t>(std::lround(255 * encoded));
+        codes.values[i] = static_cast<Code>(std::lround(largest * encoded));
     }
     return codes;
 }
@@ -119,6 +128,17 @@ BasicImage<std::uint8_t> display_codes(const Image& image) {
 /// ".png", ".exr", ...
 std::string ending_of_kind(const Path& file, const std::string& kind) {
     return kind.empty() ? ending_of(file) : "." + kind;
+}
+
+bool is_jpeg(const std::string& ending) {
+    return ending == ".jpg" || ending == ".jpeg";
+}
+
+std::string encoded_codes(const Path& file, const BasicImage<std::uint8_t>& codes,
+                          const WriteOptions& options) {
+    if (!is_jpeg(ending_of_kind(file, options.kind))) return formats::png_bytes(file, codes);
+    return formats::jpeg_bytes(file, with_color_channels(codes, color_channels(codes.channels)),
+                               options.quality);
 }
 
 bool carries(const WriteOptions& options) {
@@ -130,16 +150,19 @@ std::string encoded(const Path& file, const Image& image, const WriteOptions& op
     const std::string ending = ending_of_kind(file, options.kind);
     if (ending == ".exr" && carries(options))
         return formats::exr_bytes_carrying(file, image, options.origin, remarks);
-    if (ending == ".png") return formats::png_bytes(file, display_codes(image));
+    if (ending == ".png" && options.bits == 16)
+        return formats::png_bytes(file, display_codes<std::uint16_t>(image));
+    if (ending == ".png" || is_jpeg(ending))
+        return encoded_codes(file, display_codes<std::uint8_t>(image), options);
     if (ending == ".exr") return formats::exr_bytes(file, image, options.half);
     if (ending == ".hdr") return formats::hdr_bytes(with_color_channels(image, 3));
-    return formats::pfm_bytes(with_color_channels(image, image.channels < 3 ? 1 : 3));
+    return formats::pfm_bytes(with_color_channels(image, color_channels(image.channels)));
 }
 
 } // namespace
 
 void check_writable_kind(const std::filesystem::path& file, const std::string& kind) {
-    static const std::vector<std::string> known = {".png", ".exr", ".hdr", ".pfm"};
+    static const std::vector<std::string> known = {".png", ".jpg", ".jpeg", ".exr", ".hdr", ".pfm"};
     const std::string ending = ending_of_kind(file, kind);
     if (std::find(known.begin(), known.end(), ending) != known.end()) return;
     fail(file == "-" ? "standard output" : file,
@@ -149,13 +172,14 @@ void check_writable_kind(const std::filesystem::path& file, const std::string& k
 }
 
 bool is_display_kind(const std::filesystem::path& file, const std::string& kind) {
-    return ending_of_kind(file, kind) == ".png";
+    const std::string ending = ending_of_kind(file, kind);
+    return ending == ".png" || is_jpeg(ending);
 }
 
 void write_codes(const std::filesystem::path& file, const BasicImage<std::uint8_t>& codes,
-                 const WriteOptions&) {
+                 const WriteOptions& options) {
     check_image(file, codes.width, codes.height, codes.channels, codes.values.size());
-    write_file_atomically(file, formats::png_bytes(file, codes));
+    write_file_atomically(file, encoded_codes(file, codes, options));
 }
 
 std::vector<std::string> write_image(const std::filesystem::path& file, const Image& image,

@@ -1,0 +1,18 @@
+# The C libraries that decode pictures, for postfx_image. They are linked by their paths, so that those who build against
+# an exported postfx_image need no find_package() of each.
+
+# postfx_link_decoder(<library> <header> <Debian package>)
+function(postfx_link_decoder library header package)
+  find_library(POSTFX_LIBRARY_${library} ${library})
+  find_path(POSTFX_HEADER_${library} ${header})
+  if(NOT POSTFX_LIBRARY_${library} OR NOT POSTFX_HEADER_${library})
+    message(FATAL_ERROR "${header} or lib${library} is missing (package ${package})")
+  endif()
+  target_link_libraries(postfx_image PRIVATE ${POSTFX_LIBRARY_${library}})
+  target_include_directories(postfx_image SYSTEM PRIVATE ${POSTFX_HEADER_${library}})
+endfunction()
+
+postfx_link_decoder(png png.h libpng-dev)
+postfx_link_decoder(z zlib.h zlib1g-dev)
+postfx_link_decoder(jpeg jpeglib.h libjpeg62-turbo-dev)
+postfx_link_decoder(lcms2 lcms2.h liblcms2-dev)
