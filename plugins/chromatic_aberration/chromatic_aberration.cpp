@@ -55,9 +55,9 @@ double corner_distance(const postfx::Request& in) {
 /// How far red and blue lie apart where that is most, in the corner that is farthest from the optical axis [px].
 double largest_distance(const postfx::Request& in) {
     const double* axis = in.camera().principal_point;
-    const double farthest = 0.5
-                            * std::hypot(1.0 + std::abs(axis[1]),
-                                         double(in.width()) / in.height() * (1.0 + std::abs(axis[0])));
+    const double farthest =
+        0.5
+        * std::hypot(1.0 + std::abs(axis[1]), double(in.width()) / in.height() * (1.0 + std::abs(axis[0])));
     return in.number("strength") * in.height() * (farthest / corner_distance(in));
 }
 
