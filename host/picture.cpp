@@ -71,10 +71,10 @@ void write_picture(ChainRunner& runner, const std::filesystem::path& file, bool 
         return;
     }
     const Image codes = first_channels(runner.executor().read_picture(), channels);
-    std::vector<std::uint8_t> bytes(codes.values.size());
-    std::transform(codes.values.begin(), codes.values.end(), bytes.begin(),
+    BasicImage<std::uint8_t> bytes(codes.width, codes.height, channels);
+    std::transform(codes.values.begin(), codes.values.end(), bytes.values.begin(),
                    [](float code) { return static_cast<std::uint8_t>(std::lround(code * 255.0f)); });
-    write_png(file, codes.width, codes.height, channels, bytes);
+    write_codes(file, bytes);
 }
 
 ProgressBar::ProgressBar(std::string what, int total)

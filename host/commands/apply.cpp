@@ -72,7 +72,7 @@ public:
         const ImageFile color = read_image(color_);
         facts.width = color.image.width;
         facts.height = color.image.height;
-        facts.color_is_8bit = color.was_8bit;
+        facts.color_is_8bit = color.coding.plain_srgb && color.coding.bits == 8;
         facts.camera = depth_options_.camera(facts.width, facts.height);
         facts.working_format = *format_by_name(working_);
         facts.fuse = !no_fuse_;
@@ -123,23 +123,26 @@ private:
     std::map<std::string, Image> attachments(const Facts& facts) const {
         std::map<std::string, Image> images;
         if (!depth_.empty()) {
-            const Image depth = read_data(depth_, depth_layer_);
+            const Image depth = read_image(depth_, {.role = Role::depth, .layer = depth_layer_}).image;
             check_size(depth, depth_, facts);
             images["depth"] = depth_options_.samples(depth, facts.camera);
         }
         if (!normal_.empty()) {
-            Image normal = widened(read_data(normal_));
+            const ImageFile file = read_image(normal_, {.role = Role::normal});
+            Image normal = widened(file.image);
             check_size(normal, normal_, facts);
-            if (is_display_kind(normal_)) {
+            if (file.coding.numbers == Coding::Numbers::codes) {
                 for (float& value : normal.values)
                     value = value * 2 - 1;
             }
             images["normal"] = std::move(normal);
         }
-        for (const auto& [name, file] : {std::pair{"emission", emission_}, std::pair{"ambient", ambient_}}) {
+        for (const auto& [role, file] :
+             {std::pair{Role::emission, emission_}, std::pair{Role::ambient, ambient_}}) {
             if (file.empty()) continue;
-            images[name] = widened(read_image(file).image);
-            check_size(images[name], file, facts);
+            Image& image = images[name_of(role)];
+            image = widened(read_image(file, {.role = role}).image);
+            check_size(image, file, facts);
         }
         return images;
     }

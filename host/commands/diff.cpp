@@ -57,20 +57,25 @@ void match_channels(Pair& pair) {
     pair.b = reshaped(pair.b, colors, alpha);
 }
 
+bool is_8bit_srgb(const ImageFile& file) {
+    return file.coding.plain_srgb && file.coding.bits == 8;
+}
+
 Pair read_pair(const std::string& file_a, const std::string& file_b, const std::string& layer) {
+    const ImageSource source_a = open_image(file_a), source_b = open_image(file_b);
     Pair pair;
     if (!layer.empty()) {
-        pair.a = read_data(file_a, layer);
-        pair.b = read_data(file_b, layer);
+        pair.a = read_image(source_a, {.role = Role::data, .layer = layer}).image;
+        pair.b = read_image(source_b, {.role = Role::data, .layer = layer}).image;
         return pair;
     }
-    ImageFile a = read_image(file_a), b = read_image(file_b);
-    pair.codes = a.was_8bit && b.was_8bit;
+    ImageFile a = read_image(source_a), b = read_image(source_b);
+    pair.codes = is_8bit_srgb(a) && is_8bit_srgb(b);
     if (pair.codes) {
-        a.image = read_data(file_a);
-        b.image = read_data(file_b);
+        a.image = read_image(source_a, {.role = Role::data}).image;
+        b.image = read_image(source_b, {.role = Role::data}).image;
     }
-    if (!a.layers.empty() || !b.layers.empty())
+    if (describe_image(source_a).layers.size() > 1 || describe_image(source_b).layers.size() > 1)
         pair.notes.emplace_back("only the colour is compared; --layer selects another layer");
     pair.a = std::move(a.image);
     pair.b = std::move(b.image);
@@ -97,7 +102,7 @@ void write_difference_png(const std::string& file, const Image& difference, doub
     std::vector<std::uint8_t> codes;
     for (float value : rgb.values)
         codes.push_back(static_cast<std::uint8_t>(std::lround(255 * std::min(1.0, value * gain))));
-    write_png(file, rgb.width, rgb.height, 3, codes);
+    write_codes(file, {rgb.width, rgb.height, 3, std::move(codes)});
 }
 
 /// Light in float64, whatever the files hold; alpha is never encoded.
@@ -116,7 +121,7 @@ Image64 light(const Image& image, bool codes) {
 /// .png in heat colours, else the errors themselves in one channel.
 void write_map(const std::string& file, const Image& map) {
     if (is_display_kind(file))
-        write_png(file, map.width, map.height, 3, heat_colors(map));
+        write_codes(file, {map.width, map.height, 3, heat_colors(map)});
     else
         write_image(file, map);
 }

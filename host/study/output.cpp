@@ -40,7 +40,7 @@ std::map<std::string, std::string> write_pictures(const fs::path& folder, const 
         for (const Thumbnail& thumbnail : effect.thumbnails) {
             const std::string name = effect.id + "-" + thumbnail.name;
             const fs::path file = folder / (name + ".png");
-            write_png(file, thumbnail.width, thumbnail.height, 3, thumbnail.codes);
+            write_codes(file, {thumbnail.width, thumbnail.height, 3, thumbnail.codes});
             pictures[name] = bytes_of(file);
         }
     }

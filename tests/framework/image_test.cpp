@@ -118,14 +118,14 @@ TEST_CASE("All 256 codes survive reading and writing a PNG") {
     for (std::size_t i = 0; i < codes.values.size(); ++i)
         codes.values[i] =
             static_cast<std::uint8_t>(i / static_cast<std::size_t>(channels) + i % channels * 85);
-    write_png(directory / "codes.png", codes.width, codes.height, channels, codes.values);
+    write_codes(directory / "codes.png", codes);
     const ImageFile first = read_image(directory / "codes.png");
-    CHECK(first.was_8bit);
+    CHECK(first.coding.bits == 8);
     REQUIRE(first.image.channels == channels);
     write_image(directory / "again.png", first.image);
     CHECK(file_bytes(directory / "again.png") == file_bytes(directory / "codes.png"));
 
-    const Image data = read_data(directory / "again.png");
+    const Image data = read_image(directory / "again.png", {.role = Role::data}).image;
     for (std::size_t i = 0; i < codes.values.size(); ++i)
         REQUIRE(data.values[i] == static_cast<float>(codes.values[i] / 255.0));
 }
@@ -146,10 +146,11 @@ TEST_CASE("PNG with 16 bits") {
     const std::filesystem::path file = directory / "deep.png";
     put_bytes(file, stored_png(3, 1, 16, 0, std::string("\0\0\0\x12\x34\xff\xff", 7)));
     const ImageFile light = read_image(file);
-    CHECK_FALSE(light.was_8bit);
+    CHECK(light.coding.bits != 8);
     REQUIRE(light.image.channels == 1);
     CHECK(light.image.values[1] == static_cast<float>(srgb_to_linear(0x1234 / 65535.0)));
-    CHECK(read_data(file).values == std::vector<float>{0.0f, static_cast<float>(0x1234 / 65535.0), 1.0f});
+    CHECK(read_image(file, {.role = Role::data}).image.values
+          == std::vector<float>{0.0f, static_cast<float>(0x1234 / 65535.0), 1.0f});
 }
 
 TEST_CASE("Writing a PNG clamps, and NaN is black") {
@@ -160,7 +161,7 @@ TEST_CASE("Writing a PNG clamps, and NaN is black") {
     write_image(directory / "odd.png", image);
     // 188 = round(255 * 0.73536), the sRGB code of half the light
     const std::vector<float> codes = {255, 0, 0, 255, 188, 0, 255, 0};
-    const Image read = read_data(directory / "odd.png");
+    const Image read = read_image(directory / "odd.png", {.role = Role::data}).image;
     for (std::size_t i = 0; i < codes.size(); ++i)
         CHECK(read.values[i] == codes[i] / 255.0f);
 }
@@ -170,11 +171,11 @@ TEST_CASE("JPEG") {
     const auto file =
         std::filesystem::path(POSTFX_SOURCE_DIRECTORY) / "tests/framework/images/two_colors.jpg";
     const ImageFile jpeg = read_image(file);
-    CHECK(jpeg.was_8bit);
+    CHECK(jpeg.coding.bits == 8);
     REQUIRE((jpeg.image.width == 16 && jpeg.image.height == 8 && jpeg.image.channels == 3));
     // Left 200, 60, 30; right 30, 60, 220. Each half is whole 8x8 blocks of one colour, so what the
     // quantisation of the mean leaves is at most 4 codes.
-    const Image data = read_data(file);
+    const Image data = read_image(file, {.role = Role::data}).image;
     for (const auto& [x, rgb] :
          {std::pair{2, std::array{200, 60, 30}}, std::pair{13, std::array{30, 60, 220}}})
         for (int channel = 0; channel < 3; ++channel)
@@ -196,7 +197,7 @@ TEST_CASE("PFM keeps every bit, in both byte orders, bottom row first") {
         const Image image = peculiar_image(channels);
         write_image(directory / "a.pfm", image);
         CHECK(same_values(read_image(directory / "a.pfm").image, image));
-        CHECK(same_values(read_data(directory / "a.pfm"), image));
+        CHECK(same_values(read_image(directory / "a.pfm", {.role = Role::data}).image, image));
     }
     const Image big =
         read_bytes_as(directory / "b.pfm", std::string("Pf\n1 2\n1.0\n\x3f\x80\0\0\x40\0\0\0", 19));
@@ -338,10 +339,11 @@ TEST_CASE("What is no image is refused") {
     CHECK(read_error(directory / "missing.png").find("no such file") != std::string::npos);
     CHECK(read_error(directory.path()).find("directory") != std::string::npos);
     CHECK(read_error(directory / "empty.png").find("empty") != std::string::npos);
-    CHECK(read_error(directory / "words.png").find("PNG, JPEG, HDR, EXR, PFM") != std::string::npos);
-    CHECK(read_error("/dev/zero").find("regular") != std::string::npos);
+    CHECK(read_error(directory / "words.png").find("PNG, JPEG, OpenEXR, HDR, PFM") != std::string::npos);
+    CHECK(read_error("/dev/zero").find("larger") != std::string::npos);
     const auto file = directory / "a.png";
-    CHECK(error_of(file, [&] { read_data(file, "Z"); }).find("layers") != std::string::npos);
+    CHECK(error_of(file, [&] { read_image(file, {.role = Role::data, .layer = "Z"}).image; }).find("layers")
+          != std::string::npos);
 }
 
 TEST_CASE("Endings") {
@@ -361,8 +363,9 @@ TEST_CASE("Pictures that can't be written") {
     const auto file = directory / "a.exr";
     for (const Image& image : {Image(), Image(2, 2, 5), Image(40000, 1, 1)})
         error_of(file, [&] { write_image(file, image); });
-    error_of(directory / "a.png",
-             [&] { write_png(directory / "a.png", 2, 2, 3, std::vector<std::uint8_t>(11)); });
+    error_of(directory / "a.png", [&] {
+        write_codes(directory / "a.png", {2, 2, 3, std::vector<std::uint8_t>(11)});
+    });
     CHECK(entries(directory) == 0);
 }
 

@@ -25,7 +25,7 @@ std::string png(const TemporaryDirectory& scratch, const std::string& name, int 
     // Column 3, second row from the bottom.
     for (int c = 0; c < channels; ++c)
         codes[(std::size_t(width) + 3) * channels + c] = odd;
-    write_png((scratch / name).string(), width, height, channels, codes);
+    write_codes(scratch / name, {width, height, channels, codes});
     return (scratch / name).string();
 }
 
@@ -120,7 +120,7 @@ TEST_CASE("diff writes the difference") {
     const auto written = [&](const std::string& name, std::vector<std::string> more) {
         more.insert(more.begin(), {"diff", a, b, "-o", (scratch / name).string()});
         REQUIRE(run_program(more).status == 1);
-        return read_data((scratch / name).string());
+        return read_image((scratch / name).string(), {.role = Role::data}).image;
     };
     const Image shown = written("shown.png", {});
     CHECK(shown.at(3, 1, 0) == 1.0f); // the largest difference is white
@@ -195,7 +195,7 @@ TEST_CASE("diff --map writes FLIP per pixel") {
         INFO(outcome.err);
         REQUIRE(outcome.status == 1);
         CHECK(Json::parse(outcome.out)["flip"]["max"].get<double>() > 0);
-        return read_data((scratch / name).string());
+        return read_image((scratch / name).string(), {.role = Role::data}).image;
     };
     const Image exact = map("map.exr"), shown = map("map.png");
     CHECK(exact.channels == 1);

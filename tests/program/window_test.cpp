@@ -58,7 +58,7 @@ TEST_CASE("the window shows what render writes") {
     REQUIRE(viewed.status == 0);
     CHECK(viewed.out.find("F12") != std::string::npos); // the keys are told
     REQUIRE(run_command(render).status == 0);
-    const Difference difference = compare(read_image((scratch / "view.png").string()).image,
+    const Difference difference = compare(read_image(scratch / "view.png").image,
                                           read_image((scratch / "render.png").string()).image);
     // The same driver, scene, time and noise; GLX may choose another visual but draws into our own targets.
     CHECK(difference.psnr > 50);

@@ -3,6 +3,7 @@
 
 #include <cassert>
 #include <cstddef>
+#include <utility>
 #include <vector>
 
 namespace postfx {
@@ -21,6 +22,9 @@ struct BasicImage {
     BasicImage(int width, int height, int channels, Number value = Number(0))
         : width(width), height(height), channels(channels),
           values(static_cast<std::size_t>(width) * height * channels, value) {}
+    /// Of values that are there already: width * height * channels of them.
+    BasicImage(int width, int height, int channels, std::vector<Number> values)
+        : width(width), height(height), channels(channels), values(std::move(values)) {}
 
     bool empty() const { return values.empty(); }
     std::size_t pixel_count() const { return static_cast<std::size_t>(width) * height; }

@@ -1,13 +1,11 @@
+#include <base/read_file.hpp>
 #include <image/files.hpp>
 #include <image/formats.hpp>
 
 #include <fmt/format.h>
 
-#include <cerrno>
-#include <cstring>
-#include <fstream>
+#include <array>
 #include <new>
-#include <sstream>
 
 namespace postfx {
 namespace formats {
@@ -26,6 +24,32 @@ void check_size(const Path& file, long long width, long long height) {
                                height, max_side, max_pixels));
 }
 
+void check_plausible(const ImageSource& source, long long pixels) {
+    constexpr long long always_allowed = 7680LL * 4320, densest = 1LL << 15;
+    if (pixels <= always_allowed || pixels / densest <= static_cast<long long>(source.bytes.size())) return;
+    fail(source.name, fmt::format("absurd size: {} bytes can't be a picture of {} million pixels",
+                                  source.bytes.size(), pixels / 1000000));
+}
+
+void expect_no_layers(const ImageSource& source, const ImageRequest& request) {
+    for (const std::string& wish : {request.layer, request.view})
+        if (!wish.empty())
+            fail(source.name,
+                 fmt::format("only EXR files have layers and views, so there is no \"{}\" in it", wish));
+}
+
+ImageDescription description_of_one(const char* kind, const Image& image, const std::string& type) {
+    static const char* const names[5][4] = {{}, {"Y"}, {"Y", "A"}, {"R", "G", "B"}, {"R", "G", "B", "A"}};
+    LayerDescription layer;
+    for (int channel = 0; channel < image.channels; ++channel)
+        layer.channels.push_back({names[image.channels][channel], type});
+    ImageDescription description{
+        .kind = kind, .parts = {{.width = image.width, .height = image.height}}, .layers = {layer}};
+    for (const Role role : {Role::color, Role::depth, Role::normal, Role::emission, Role::ambient})
+        description.roles.push_back({.role = role});
+    return description;
+}
+
 } // namespace formats
 
 namespace {
@@ -33,69 +57,52 @@ namespace {
 using formats::fail;
 using formats::Path;
 
-std::string read_bytes(const Path& file) {
-    std::error_code problem;
-    const auto type = std::filesystem::status(file, problem).type();
-    if (type == std::filesystem::file_type::not_found) fail(file, "no such file");
-    if (type == std::filesystem::file_type::directory) fail(file, "is a directory, not an image");
-    // Devices may never end; a pipe is what a shell's process substitution gives.
-    if (type != std::filesystem::file_type::regular && type != std::filesystem::file_type::fifo)
-        fail(file, problem ? "can't be read: " + problem.message() : "is no regular file");
-    errno = 0;
-    std::ifstream stream(file, std::ios::binary);
-    if (!stream) fail(file, fmt::format("can't be opened: {}", std::strerror(errno)));
-    std::ostringstream bytes;
-    bytes << stream.rdbuf();
-    if (stream.bad()) fail(file, fmt::format("can't be read: {}", std::strerror(errno)));
-    if (bytes.view().empty()) fail(file, "is empty");
-    return std::move(bytes).str();
+/// The largest file that is read: 2^28 pixels of four floats and further layers. A pipe or a device, whose size nobody
+/// knows before, may give an eighth of it.
+std::size_t max_bytes(const Path& file) {
+    constexpr std::size_t largest = std::size_t{1} << 33;
+    return is_stream(file) ? largest / 8 : largest;
 }
 
-[[noreturn]] void unknown_kind(const Path& file) {
-    fail(file, "is not an image of a known kind (PNG, JPEG, HDR, EXR, PFM)");
+/// Every kind of file that is known; the first one that recognises the bytes reads them.
+constexpr std::array known_formats = {&formats::png, &formats::jpeg, &formats::exr, &formats::hdr,
+                                      &formats::pfm};
+
+const formats::Format& format_of(const ImageSource& source) {
+    for (const formats::Format* format : known_formats)
+        if (format->recognises(source.bytes)) return *format;
+    std::vector<std::string> names;
+    for (const formats::Format* format : known_formats)
+        names.emplace_back(format->name);
+    fail(source.name, fmt::format("is not an image of a known kind ({})", fmt::join(names, ", ")));
 }
 
-/// Read the file and give its bytes to `read`. A picture that does not fit into memory is an Error like any
-/// other.
-template<class Read>
-auto with_bytes(const Path& file, Read read) {
+} // namespace
+
+ImageSource open_image(const std::filesystem::path& file) {
     try {
-        const std::string bytes = read_bytes(file);
-        return read(bytes);
+        ImageSource source{file, read_file(file, max_bytes(file), "an image")};
+        if (source.bytes.empty()) fail(file, "is empty");
+        return source;
     } catch (const std::bad_alloc&) {
         fail(file, "not enough memory for this picture");
     }
 }
 
-} // namespace
-
-ImageFile read_image(const std::filesystem::path& file) {
-    return with_bytes(file, [&](const std::string& bytes) -> ImageFile {
-        if (formats::is_png(bytes) || formats::is_jpeg(bytes)) {
-            formats::CodedImage coded = formats::read_png_or_jpeg(file, bytes, formats::Meaning::light);
-            return {std::move(coded.image), coded.was_8bit, {}};
-        }
-        if (formats::is_exr(bytes)) {
-            formats::ExrLayers exr = formats::read_exr(file, bytes);
-            return {std::move(exr.image), false, std::move(exr.layers)};
-        }
-        if (formats::is_hdr(bytes)) return {formats::read_hdr(file, bytes), false, {}};
-        if (formats::is_pfm(bytes)) return {formats::read_pfm(file, bytes), false, {}};
-        unknown_kind(file);
-    });
+ImageFile read_image(const ImageSource& source, const ImageRequest& request) {
+    try {
+        return format_of(source).read(source, request);
+    } catch (const std::bad_alloc&) {
+        fail(source.name, "not enough memory for this picture");
+    }
 }
 
-Image read_data(const std::filesystem::path& file, const std::string& layer) {
-    return with_bytes(file, [&](const std::string& bytes) -> Image {
-        if (formats::is_exr(bytes)) return formats::read_exr_layer(file, bytes, layer);
-        if (!layer.empty())
-            fail(file, fmt::format("only EXR files have layers, so there is no \"{}\" in it", layer));
-        if (formats::is_png(bytes) || formats::is_jpeg(bytes))
-            return formats::read_png_or_jpeg(file, bytes, formats::Meaning::data).image;
-        if (formats::is_hdr(bytes)) return formats::read_hdr(file, bytes);
-        if (formats::is_pfm(bytes)) return formats::read_pfm(file, bytes);
-        unknown_kind(file);
-    });
+ImageFile read_image(const std::filesystem::path& file, const ImageRequest& request) {
+    return read_image(open_image(file), request);
+}
+
+ImageDescription describe_image(const ImageSource& source) {
+    return format_of(source).describe(source);
 }
 
 } // namespace postfx

@@ -2,13 +2,14 @@
 // nobody else includes this.
 #pragma once
 
+#include <image/files.hpp>
+
 #include <postfx/error.hpp>
 #include <postfx/image.hpp>
 
 #include <algorithm>
 #include <cstdint>
 #include <filesystem>
-#include <map>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -27,6 +28,10 @@ constexpr long long max_pixels = 1LL << 28;
 /// Throws Error unless 1 <= width, height <= max_side and there are at most max_pixels.
 void check_size(const Path& file, long long width, long long height);
 
+/// Throws Error if so few bytes can't be a picture of so many pixels: a small file must not ask for all memory. What an
+/// 8K display shows is always allowed; beyond that, no coding packs more than 2^15 equal pixels into a byte.
+void check_plausible(const ImageSource& source, long long pixels);
+
 /// The file's rows the other way up. Every format but PFM counts them from the top.
 template<class Number>
 BasicImage<Number> upside_down(const BasicImage<Number>& image) {
@@ -40,51 +45,46 @@ BasicImage<Number> upside_down(const BasicImage<Number>& image) {
     return turned;
 }
 
+/// A kind of image file. files.cpp has the list; a reader is given the whole file and what is asked of it.
+struct Format {
+    const char* name;                           ///< "PNG", "OpenEXR", ...: for messages
+    bool (*recognises)(std::string_view bytes); ///< by the first bytes
+    ImageFile (*read)(const ImageSource& source, const ImageRequest& request);
+    ImageDescription (*describe)(const ImageSource& source);
+};
+
+/// Throws Error if a layer or a view is asked of a file that has none.
+void expect_no_layers(const ImageSource& source, const ImageRequest& request);
+/// Of a file with one picture, which serves every role; `type` is that of its channels.
+ImageDescription description_of_one(const char* kind, const Image& image, const std::string& type);
+
+extern const Format png, jpeg, exr, hdr, pfm;
+
 // ---- PNG and JPEG
 
-enum class Meaning {
-    light, ///< sRGB-decoded; alpha is not
-    data,  ///< codes divided by the largest code
-};
-struct CodedImage {
-    Image image;
-    bool was_8bit = false;
-};
-bool is_png(std::string_view bytes);
-bool is_jpeg(std::string_view bytes);
-CodedImage read_png_or_jpeg(const Path& file, std::string_view bytes, Meaning meaning);
 /// `codes`: 1 to 4 channels of 8 bits.
 std::string png_bytes(const Path& file, const BasicImage<std::uint8_t>& codes);
 
 // ---- Radiance HDR
 
-bool is_hdr(std::string_view bytes);
-Image read_hdr(const Path& file, std::string_view bytes);
 /// Three channels with one exponent: 8 bits of mantissa for the largest, nothing negative. NaN becomes 0,
 /// values too large for the format its largest.
 std::string hdr_bytes(const Image& rgb);
 
-// ---- PFM
+// ---- PFM: 1 or 3 channels, either byte order, bits kept. The magnitude of the scale, which most writers leave at 1
+// and most readers ignore, is ignored.
 
-bool is_pfm(std::string_view bytes);
-/// 1 or 3 channels, either byte order, bits kept. The magnitude of the scale, which most writers leave at 1
-/// and most readers ignore, is ignored.
-Image read_pfm(const Path& file, std::string_view bytes);
 /// `image`: 1 or 3 channels. Little endian.
 std::string pfm_bytes(const Image& image);
 
 // ---- OpenEXR
 
-bool is_exr(std::string_view bytes);
-struct ExrLayers {
-    Image image;
-    std::map<std::string, Image> layers;
-};
-/// The colour, and every further layer.
-ExrLayers read_exr(const Path& file, const std::string& bytes);
-/// One layer or channel; "" = depth if the file has one, else the colour.
-Image read_exr_layer(const Path& file, const std::string& bytes, const std::string& layer);
 /// Channels Y, YA, RGB or RGBA; half or float.
 std::string exr_bytes(const Path& file, const Image& image, bool half);
+
+/// The origin, an EXR, with `image` (3 or 4 channels, Rec. 709) where its picture was; see WriteOptions. Adds to `remarks`
+/// what could not be kept.
+std::string exr_bytes_carrying(const Path& file, const Image& image, const Origin& origin,
+                               std::vector<std::string>& remarks);
 
 } // namespace postfx::formats

@@ -167,13 +167,11 @@ void append_row(std::string& bytes, const std::vector<Rgbe>& row) {
         append_coded_channel(bytes, row, channel);
 }
 
-} // namespace
-
-bool is_hdr(std::string_view bytes) {
+bool recognises_hdr(std::string_view bytes) {
     return bytes.starts_with("#?RADIANCE") || bytes.starts_with("#?RGBE");
 }
 
-Image read_hdr(const Path& file, std::string_view data) {
+Image decode_hdr(const Path& file, std::string_view data) {
     Bytes bytes(file, data);
     const Resolution size = read_header(file, bytes);
     Image image(size.width, size.height, 3);
@@ -188,6 +186,20 @@ Image read_hdr(const Path& file, std::string_view data) {
     }
     return image;
 }
+
+ImageFile read_hdr(const ImageSource& source, const ImageRequest& request) {
+    expect_no_layers(source, request);
+    return {.image = decode_hdr(source.name, source.bytes)};
+}
+
+ImageDescription describe_hdr(const ImageSource& source) {
+    return description_of_one(hdr.name, decode_hdr(source.name, source.bytes),
+                              "8 bit with a common exponent");
+}
+
+} // namespace
+
+const Format hdr = {"HDR", recognises_hdr, read_hdr, describe_hdr};
 
 std::string hdr_bytes(const Image& rgb) {
     std::string bytes =

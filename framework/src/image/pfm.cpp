@@ -61,13 +61,11 @@ void swap_bytes(char* bytes, std::size_t count) {
 
 constexpr bool little_endian_machine = std::endian::native == std::endian::little;
 
-} // namespace
-
-bool is_pfm(std::string_view bytes) {
+bool recognises_pfm(std::string_view bytes) {
     return bytes.size() > 2 && bytes[0] == 'P' && (bytes[1] == 'F' || bytes[1] == 'f') && is_space(bytes[2]);
 }
 
-Image read_pfm(const Path& file, std::string_view bytes) {
+Image decode_pfm(const Path& file, std::string_view bytes) {
     HeaderWords header(file, bytes);
     const auto width = header.next<long long>("width");
     const auto height = header.next<long long>("height");
@@ -88,6 +86,19 @@ Image read_pfm(const Path& file, std::string_view bytes) {
     if ((scale < 0) != little_endian_machine) swap_bytes(values, count);
     return image;
 }
+
+ImageFile read_pfm(const ImageSource& source, const ImageRequest& request) {
+    expect_no_layers(source, request);
+    return {.image = decode_pfm(source.name, source.bytes)};
+}
+
+ImageDescription describe_pfm(const ImageSource& source) {
+    return description_of_one(pfm.name, decode_pfm(source.name, source.bytes), "float");
+}
+
+} // namespace
+
+const Format pfm = {"PFM", recognises_pfm, read_pfm, describe_pfm};
 
 std::string pfm_bytes(const Image& image) {
     std::string bytes =

@@ -75,6 +75,11 @@ void check_jpeg_segments(const Path& file, std::string_view bytes) {
     fail(file, "truncated JPEG: its end marker is missing");
 }
 
+enum class Meaning {
+    light, ///< sRGB-decoded; alpha is not
+    data,  ///< codes divided by the largest code
+};
+
 /// Scene value of every code.
 std::vector<float> decoding_table(std::size_t codes, Meaning meaning) {
     std::vector<float> table(codes);
@@ -103,18 +108,28 @@ struct FreeCodes {
     void operator()(void* codes) const { stbi_image_free(codes); }
 };
 
-} // namespace
+Coding coding_of(int channels, int bits) {
+    const bool has_alpha = channels == 2 || channels == 4;
+    return {.numbers = Coding::Numbers::codes,
+            .bits = bits,
+            .plain_srgb = true,
+            .alpha = has_alpha ? Coding::Alpha::straight : Coding::Alpha::none};
+}
 
-bool is_png(std::string_view bytes) {
+bool recognises_png(std::string_view bytes) {
     return bytes.starts_with("\x89PNG\r\n\x1a\n");
 }
 
-bool is_jpeg(std::string_view bytes) {
+bool recognises_jpeg(std::string_view bytes) {
     return bytes.starts_with("\xff\xd8\xff");
 }
 
-CodedImage read_png_or_jpeg(const Path& file, std::string_view bytes, Meaning meaning) {
-    const char* kind = is_png(bytes) ? "PNG" : "JPEG";
+ImageFile read_png_or_jpeg(const ImageSource& source, const ImageRequest& request) {
+    expect_no_layers(source, request);
+    const Path& file = source.name;
+    const std::string_view bytes = source.bytes;
+    const Meaning meaning = is_light(request.role) ? Meaning::light : Meaning::data;
+    const char* kind = recognises_png(bytes) ? "PNG" : "JPEG";
     if (bytes.size() > static_cast<std::size_t>(std::numeric_limits<int>::max()))
         fail(file, fmt::format("absurd size: a {} of {} bytes", kind, bytes.size()));
     const auto* data = reinterpret_cast<const stbi_uc*>(bytes.data());
@@ -122,7 +137,7 @@ CodedImage read_png_or_jpeg(const Path& file, std::string_view bytes, Meaning me
     const auto check = [&](bool good) {
         if (!good) fail(file, fmt::format("truncated or damaged {} ({})", kind, stbi_failure_reason()));
     };
-    if (is_png(bytes))
+    if (recognises_png(bytes))
         check_png_size(file, bytes);
     else
         check_jpeg_segments(file, bytes);
@@ -134,13 +149,26 @@ CodedImage read_png_or_jpeg(const Path& file, std::string_view bytes, Meaning me
         const std::unique_ptr<stbi_us, FreeCodes> codes(
             stbi_load_16_from_memory(data, size, &width, &height, &channels, 0));
         check(codes != nullptr);
-        return {decoded(codes.get(), width, height, channels, meaning), false};
+        return {.image = decoded(codes.get(), width, height, channels, meaning),
+                .coding = coding_of(channels, 16)};
     }
     const std::unique_ptr<stbi_uc, FreeCodes> codes(
         stbi_load_from_memory(data, size, &width, &height, &channels, 0));
     check(codes != nullptr);
-    return {decoded(codes.get(), width, height, channels, meaning), true};
+    return {.image = decoded(codes.get(), width, height, channels, meaning),
+            .coding = coding_of(channels, 8)};
 }
+
+ImageDescription describe_png_or_jpeg(const ImageSource& source) {
+    const ImageFile file = read_png_or_jpeg(source, {.role = Role::data});
+    return description_of_one(recognises_png(source.bytes) ? png.name : jpeg.name, file.image,
+                              fmt::format("{} bit", file.coding.bits));
+}
+
+} // namespace
+
+const Format png = {"PNG", recognises_png, read_png_or_jpeg, describe_png_or_jpeg};
+const Format jpeg = {"JPEG", recognises_jpeg, read_png_or_jpeg, describe_png_or_jpeg};
 
 std::string png_bytes(const Path& file, const BasicImage<std::uint8_t>& codes) {
     const BasicImage<std::uint8_t> rows = upside_down(codes);

@@ -97,8 +97,15 @@ BasicImage<std::uint8_t> display_codes(const Image& image) {
     return codes;
 }
 
-std::string encoded(const Path& file, const Image& image, const ExrOptions& options) {
+bool carries(const WriteOptions& options) {
+    return options.origin.source && formats::exr.recognises(options.origin.source->bytes);
+}
+
+std::string encoded(const Path& file, const Image& image, const WriteOptions& options,
+                    std::vector<std::string>& remarks) {
     const std::string ending = ending_of(file);
+    if (ending == ".exr" && carries(options))
+        return formats::exr_bytes_carrying(file, image, options.origin, remarks);
     if (ending == ".png") return formats::png_bytes(file, display_codes(image));
     if (ending == ".exr") return formats::exr_bytes(file, image, options.half);
     if (ending == ".hdr") return formats::hdr_bytes(with_color_channels(image, 3));
@@ -119,21 +126,19 @@ bool is_display_kind(const std::filesystem::path& file) {
     return ending_of(file) == ".png";
 }
 
-void write_png(const std::filesystem::path& file, int width, int height, int channels,
-               const std::vector<std::uint8_t>& codes) {
-    check_image(file, width, height, channels, codes.size());
-    BasicImage<std::uint8_t> image;
-    image.width = width;
-    image.height = height;
-    image.channels = channels;
-    image.values = codes;
-    write_file_atomically(file, formats::png_bytes(file, image));
+void write_codes(const std::filesystem::path& file, const BasicImage<std::uint8_t>& codes,
+                 const WriteOptions&) {
+    check_image(file, codes.width, codes.height, codes.channels, codes.values.size());
+    write_file_atomically(file, formats::png_bytes(file, codes));
 }
 
-void write_image(const std::filesystem::path& file, const Image& image, const ExrOptions& options) {
+std::vector<std::string> write_image(const std::filesystem::path& file, const Image& image,
+                                     const WriteOptions& options) {
     check_writable_kind(file);
     check_image(file, image.width, image.height, image.channels, image.values.size());
-    write_file_atomically(file, encoded(file, image, options));
+    std::vector<std::string> remarks;
+    write_file_atomically(file, encoded(file, image, options, remarks));
+    return remarks;
 }
 
 void write_file_atomically(const std::filesystem::path& file, const std::string& bytes) {
