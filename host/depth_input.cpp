@@ -121,17 +121,14 @@ bool DepthOptions::means_nothing(double z) const {
 Image DepthOptions::samples(const Image& depth, const Camera& camera) const {
     if (is_window()) return depth;
     Image result(depth.width, depth.height, 1);
-    const double half_height = camera.tan_half_fov();
-    const double half_width = half_height * depth.width / depth.height;
     for (int y = 0; y < depth.height; ++y) {
         for (int x = 0; x < depth.width; ++x) {
             double z = depth.at(x, y, 0);
             const bool nothing = means_nothing(z);
             z *= depth_unit_;
             if (kind_ == "distance") {
-                const double ray_x = (2 * (x + 0.5) / depth.width - 1) * half_width;
-                const double ray_y = (2 * (y + 0.5) / depth.height - 1) * half_height;
-                z /= std::sqrt(1 + ray_x * ray_x + ray_y * ray_y);
+                const auto [right, up] = camera.view_plane(x + 0.5, y + 0.5, depth.width, depth.height);
+                z /= std::sqrt(1 + right * right + up * up);
             }
             result.at(x, y, 0) = static_cast<float>(nothing ? camera.sky_depth : camera.depth_at(z));
         }

@@ -9,7 +9,8 @@ Projection make_projection(const Camera& camera, double aspect, glm::dvec2 shift
     const double half = camera.orthographic ? camera.vertical_extent / 2 : camera.tan_half_fov();
     Projection result;
     result.half_extent = {half * aspect, half};
-    const glm::dvec2 h = result.half_extent;
+    result.middle = shift - glm::dvec2(camera.principal_point[0], camera.principal_point[1]);
+    const glm::dvec2 h = result.half_extent, middle = result.middle;
     glm::dmat4& m = result.view_to_clip; // m[column][row]
     m = glm::dmat4(0);
     m[0][0] = 1 / h.x;
@@ -18,20 +19,20 @@ Projection make_projection(const Camera& camera, double aspect, glm::dvec2 shift
         const double depth = camera.far_plane - camera.near_plane;
         m[2][2] = 1 / depth;
         m[3][2] = camera.far_plane / depth;
-        m[3][0] = -shift.x;
-        m[3][1] = -shift.y;
+        m[3][0] = -middle.x;
+        m[3][1] = -middle.y;
         m[3][3] = 1;
         result.clip_to_direction = glm::dmat4(0);
         result.clip_to_direction[2] = {0, 0, -1, 0};
     } else {
-        m[2][0] = shift.x;
-        m[2][1] = shift.y;
+        m[2][0] = middle.x;
+        m[2][1] = middle.y;
         m[2][3] = -1;
         m[3][2] = camera.near_plane;
         result.clip_to_direction = glm::dmat4(0);
         result.clip_to_direction[0][0] = h.x;
         result.clip_to_direction[1][1] = h.y;
-        result.clip_to_direction[2] = {h.x * shift.x, h.y * shift.y, -1, 0};
+        result.clip_to_direction[2] = {h.x * middle.x, h.y * middle.y, -1, 0};
     }
     return result;
 }
@@ -40,6 +41,7 @@ Camera drawable(const Camera& camera) {
     Camera result = camera.orthographic
                         ? Camera::parallel(camera.vertical_extent, camera.near_plane, camera.far_plane)
                         : Camera::perspective(camera.vertical_fov, camera.near_plane);
+    result.principal_point = camera.principal_point;
     result.view_to_world = camera.view_to_world;
     return result;
 }

@@ -25,24 +25,26 @@ struct Frustum {
     std::vector<glm::dvec3> corners;
 };
 
-Frustum frustum_of(const Camera& camera, glm::dvec2 half) {
+Frustum frustum_of(const Camera& camera, const Projection& projection) {
     Frustum result;
     const double near = camera.near_plane, far = camera.far_plane;
     const double slope = camera.orthographic ? 0 : 1, constant = 1 - slope;
+    const glm::dvec2 low = projection.plane({-1, -1}), high = projection.plane({1, 1});
     for (const double sign : {-1.0, 1.0}) {
-        result.sides.push_back(glm::dvec4(sign, 0, -slope * half.x, constant * half.x)
-                               / std::hypot(1, slope * half.x));
-        result.sides.push_back(glm::dvec4(0, sign, -slope * half.y, constant * half.y)
-                               / std::hypot(1, slope * half.y));
+        const glm::dvec2 away = sign < 0 ? high : -low; // of that side from the view axis
+        result.sides.push_back(glm::dvec4(sign, 0, -slope * away.x, constant * away.x)
+                               / std::hypot(1, slope * away.x));
+        result.sides.push_back(glm::dvec4(0, sign, -slope * away.y, constant * away.y)
+                               / std::hypot(1, slope * away.y));
     }
     result.sides.emplace_back(0, 0, -1, -near);
     if (camera.orthographic) result.sides.emplace_back(0, 0, 1, far);
     for (const double z : {near, far}) {
-        const glm::dvec2 at = half * (constant + slope * z);
         if (z == far && !camera.orthographic) break;
-        for (const double x : {-at.x, at.x}) {
-            for (const double y : {-at.y, at.y})
-                result.corners.emplace_back(x, y, -z);
+        const double scale = constant + slope * z;
+        for (const double x : {low.x, high.x}) {
+            for (const double y : {low.y, high.y})
+                result.corners.emplace_back(scale * x, scale * y, -z);
         }
     }
     return result;
@@ -169,8 +171,8 @@ ViewBounds::ViewBounds(const Scene& scene) : scene_(scene) {
 
 SceneBounds ViewBounds::at(double time, const Camera& camera, int width, int height) {
     scene_.place_nodes(time, nodes_);
-    const glm::dvec2 half = make_projection(camera, static_cast<double>(width) / height).half_extent;
-    const Frustum frustum = frustum_of(camera, half);
+    const Projection projection = make_projection(camera, static_cast<double>(width) / height);
+    const Frustum frustum = frustum_of(camera, projection);
     const glm::dmat4 view_to_world = glm::make_mat4(camera.view_to_world.data());
     const glm::dmat4 world_to_view = glm::inverse(view_to_world);
     const double eye_from_origin = glm::length(glm::dvec3(view_to_world[3]));
@@ -207,7 +209,7 @@ SceneBounds ViewBounds::at(double time, const Camera& camera, int width, int hei
     if (surfaces) {
         bounds.nearest = std::max(bounds.nearest, camera.near_plane);
         // A sample may lie half a pixel beside the place that it stands for, across as well as up.
-        const double pixel = std::sqrt(2.0) * half.y / height;
+        const double pixel = std::sqrt(2.0) * projection.half_extent.y / height;
         bounds = seen_through_depth(bounds, camera, view_to_world[3].y, pixel);
     } else {
         bounds = {};

@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace postfx::host {
@@ -30,7 +31,9 @@ class Wavelengths : public Truth {
 public:
     explicit Wavelengths(const TruthRequest& request)
         : width_(request.width), height_(request.height), strength_(request.value("strength")),
-          spectrum_(strength_, request.width, request.height), picture_(counted(given_light(request))) {}
+          spectrum_(strength_, request.width, request.height),
+          axis_(request.scene.camera_at(request.time).principal_point),
+          picture_(counted(given_light(request))) {}
 
     std::string description(int samples) const override {
         return fmt::format(
@@ -63,14 +66,15 @@ public:
 private:
     double seen(int x, int y, int channel, double quantile) const {
         const double scale = 1 + spectrum_.displacement(channel, quantile);
-        const double middle_x = width_ / 2.0, middle_y = height_ / 2.0;
-        return picture_.within_neighbours(middle_x + (x + 0.5 - middle_x) * scale,
-                                          middle_y + (y + 0.5 - middle_y) * scale, channel);
+        const double axis_x = width_ / 2.0 * (1 + axis_[0]), axis_y = height_ / 2.0 * (1 + axis_[1]);
+        return picture_.within_neighbours(axis_x + (x + 0.5 - axis_x) * scale,
+                                          axis_y + (y + 0.5 - axis_y) * scale, channel);
     }
 
     int width_, height_;
     double strength_;
     LensSpectrum spectrum_;
+    std::array<double, 2> axis_; ///< as Camera::principal_point
     SplinePicture picture_;
 };
 

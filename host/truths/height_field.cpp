@@ -33,6 +33,8 @@ HeightField::HeightField(const Image& depth, const Image& normal, const Camera& 
     : width_(depth.width), height_(depth.height), parallel_(camera.orthographic), radius_(radius),
       falloff_(falloff),
       pixel_((parallel_ ? camera.vertical_extent : 2 * camera.tan_half_fov()) / depth.height),
+      axis_(0.5 * depth.width * (1 + camera.principal_point[0]),
+            0.5 * depth.height * (1 + camera.principal_point[1])),
       distance_(depth.pixel_count()), normal_(depth.pixel_count()) {
     for (std::size_t i = 0; i < distance_.size(); ++i) {
         const double z = camera.view_z(depth.values[i]);
@@ -46,7 +48,7 @@ HeightField::HeightField(const Image& depth, const Image& normal, const Camera& 
 
 glm::dvec3 HeightField::place(int x, int y) const {
     const double z = distance_[index(x, y)], metres = pixel_ * (parallel_ ? 1 : z);
-    return {(x + 0.5 - 0.5 * width_) * metres, (y + 0.5 - 0.5 * height_) * metres, -z};
+    return {(x + 0.5 - axis_.x) * metres, (y + 0.5 - axis_.y) * metres, -z};
 }
 
 double HeightField::visibility(int x, int y, double angle) const {

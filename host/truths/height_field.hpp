@@ -42,6 +42,7 @@ private:
     bool parallel_;
     double radius_, falloff_;
     double pixel_;                 ///< its side, in the plane 1 m before the eye (perspective), or in metres
+    glm::dvec2 axis_;              ///< where the optical axis is in the picture, pixels
     std::vector<double> distance_; ///< along the view axis [m]; 0 where nothing is
     std::vector<glm::dvec3> normal_;
 };

@@ -8,7 +8,8 @@ namespace postfx::host {
 /// both, half of it on either side.
 class LensSpectrum {
 public:
-    /// Red and blue lie `strength` picture heights apart in the corner of a picture of that size.
+    /// Red and blue lie `strength` picture heights apart in the corner of a picture of that size, with the optical axis
+    /// in its middle.
     LensSpectrum(double strength, int width, int height);
 
     /// Magnification - 1 of a wavelength that `channel` sees; `quantile`, 0 to 1, of its kernel.

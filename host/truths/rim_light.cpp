@@ -59,8 +59,8 @@ public:
         const float* n = normal_.pixel(x, y);
         const Number length = std::hypot(Number(n[0]), Number(n[1]), Number(n[2]));
         if (length == 0) return light_.pixel<Number>(x, y, 0);
-        const Number right = per_pixel_ * Number(2 * x + 1 - normal_.width);
-        const Number up = per_pixel_ * Number(2 * y + 1 - normal_.height);
+        const Number right = per_pixel_ * (Number(2 * x + 1) - Number(axis_.x));
+        const Number up = per_pixel_ * (Number(2 * y + 1) - Number(axis_.y));
         const Number cosine = (Number(n[2]) - right * Number(n[0]) - up * Number(n[1]))
                               / (length * std::hypot(Number(1), right, up));
         return light_.pixel<Number>(x, y, share_.at(cosine));
@@ -73,12 +73,15 @@ private:
     RimOfNormals(const TruthRequest& request, const SceneFrame& frame)
         : share_(rim_share(request)), light_(request, frame),
           normal_(read_attachment(frame, "normal", request.width, request.height)),
-          per_pixel_(frame.camera.tan_half_fov() / request.height) {}
+          per_pixel_(frame.camera.tan_half_fov() / request.height),
+          axis_(request.width * (1 + frame.camera.principal_point[0]),
+                request.height * (1 + frame.camera.principal_point[1])) {}
 
     RimShare share_;
     AddedLight light_;
     Image normal_;
     double per_pixel_; ///< slope of a ray for half a pixel; 0 for parallel ones
+    glm::dvec2 axis_;  ///< where the optical axis is in the picture, half pixels
 };
 
 /// Of the scene's surfaces, all over each pixel.

@@ -73,8 +73,7 @@ private:
         const SceneFrame frame = renderer.render(width, height, request.time, {"depth"});
         const Image depth = read_attachment(frame, "depth", width, height);
         const glm::dmat4 to_world = glm::make_mat4(frame.camera.view_to_world.data());
-        const glm::dvec2 half =
-            make_projection(frame.camera, static_cast<double>(width) / height).half_extent;
+        const Projection projection = make_projection(frame.camera, static_cast<double>(width) / height);
         points_.resize(depth.values.size());
         for (int y = 0; y < height; ++y) {
             for (int x = 0; x < width; ++x) {
@@ -82,7 +81,7 @@ private:
                 if (std::isinf(z)) continue;
                 const glm::dvec2 screen(2 * (x + 0.5) / width - 1, 2 * (y + 0.5) / height - 1);
                 const bool parallel = frame.camera.orthographic;
-                const glm::dvec2 across = half * screen * (parallel ? 1 : z);
+                const glm::dvec2 across = projection.plane(screen) * (parallel ? 1 : z);
                 const glm::dvec3 place(to_world * glm::dvec4(across, -z, 1));
                 const glm::dvec3 line = parallel ? glm::dvec3(0, 0, -z) : glm::dvec3(across, -z);
                 points_[static_cast<std::size_t>(y) * width + x] =

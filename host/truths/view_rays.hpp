@@ -24,12 +24,12 @@ class ViewRays {
 public:
     ViewRays(const Camera& camera, int width, int height)
         : parallel_(camera.orthographic), near_(camera.near_plane), size_(width, height),
-          half_extent_(make_projection(camera, static_cast<double>(width) / height).half_extent),
+          projection_(make_projection(camera, static_cast<double>(width) / height)),
           to_world_(glm::make_mat4(camera.view_to_world.data())) {}
 
     /// Pixels from the picture's lower left corner.
     ViewRay through(double x, double y) const {
-        const glm::dvec2 across = half_extent_ * (2.0 * glm::dvec2(x, y) / size_ - 1.0);
+        const glm::dvec2 across = projection_.plane(2.0 * glm::dvec2(x, y) / size_ - 1.0);
         if (parallel_) {
             return {.origin = glm::dvec3(to_world_ * glm::dvec4(across, -near_, 1)),
                     .direction = -glm::normalize(glm::dvec3(to_world_[2])),
@@ -44,7 +44,8 @@ public:
 private:
     bool parallel_;
     double near_;
-    glm::dvec2 size_, half_extent_;
+    glm::dvec2 size_;
+    Projection projection_;
     glm::dmat4 to_world_;
 };
 

@@ -15,14 +15,17 @@ struct Gain {
     bool natural = true;
     double strength = 1;
     double radius = 0, softness = 1, roundness = 1; ///< artistic
-    double tangent = 0; ///< of half the vertical field of view; 0 for parallel rays
+    double tangent = 0;           ///< of half the vertical field of view; 0 for parallel rays
+    std::array<double, 2> axis{}; ///< as Camera::principal_point
     int width = 1, height = 1;
 
     /// Light falls on the sensor by the fourth power of the cosine of the angle at which it comes through the lens.
     template<class Number>
     Number shape(Number across, Number up) const {
         if (natural) {
-            const Number cosine = 1 / std::hypot(Number(1), across * Number(tangent), up * Number(tangent));
+            const Number right = across - Number(axis[0]) * Number(width) / Number(height);
+            const Number above = up - Number(axis[1]);
+            const Number cosine = 1 / std::hypot(Number(1), right * Number(tangent), above * Number(tangent));
             return cosine * cosine * (cosine * cosine);
         }
         const Number aspect = Number(width) / Number(height);
@@ -51,6 +54,7 @@ public:
                 .softness = request.value("softness"),
                 .roundness = request.value("roundness"),
                 .tangent = request.scene.camera_at(request.time).tan_half_fov(),
+                .axis = request.scene.camera_at(request.time).principal_point,
                 .width = request.width,
                 .height = request.height},
           color_(given_light(request)) {}
@@ -72,7 +76,10 @@ double gain_error(const Method& method) {
     constexpr int width = 192, height = 108;
     const MethodInput input{.color = Image(width, height, 3, 1), .camera = Camera::perspective(70, 0.1)};
     const Image64 result = method.draw(entry_with(method, {{"model", 0}, {"strength", 1}}), input);
-    const Gain gain{.tangent = input.camera.tan_half_fov(), .width = width, .height = height};
+    const Gain gain{.tangent = input.camera.tan_half_fov(),
+                    .axis = input.camera.principal_point,
+                    .width = width,
+                    .height = height};
     double worst = 0;
     for (int y = 0; y < height; ++y) {
         for (int x = 0; x < width; ++x)

@@ -10,7 +10,8 @@ constexpr postfx::Parameter parameters[] = {
         .range(-0.05, 0.05)
         .identity_at(0)
         .in_unit("height")
-        .about("Distance of the red from the blue image in the corner; negative: blue outside"),
+        .about("Distance of the red from the blue image in the corner, if the optical axis is in the middle; "
+               "negative: blue outside"),
 };
 constexpr const char* attachments[] = {"depth"};
 
@@ -46,6 +47,20 @@ constexpr double spread = dispersion(blue_peak) - dispersion(red_peak);
 constexpr double red_end = (dispersion(red_peak) - dispersion(green_peak)) / spread;
 constexpr double blue_end = (dispersion(blue_peak) - dispersion(green_peak)) / spread;
 
+/// Of a picture with the optical axis in its middle, from there, in heights.
+double corner_distance(const postfx::Request& in) {
+    return 0.5 * std::hypot(1.0, double(in.width()) / in.height());
+}
+
+/// How far red and blue lie apart where that is most, in the corner that is farthest from the optical axis [px].
+double largest_distance(const postfx::Request& in) {
+    const double* axis = in.camera().principal_point;
+    const double farthest =
+        0.5
+        * std::hypot(1.0 + std::abs(axis[1]), double(in.width()) / in.height() * (1.0 + std::abs(axis[0])));
+    return in.number("strength") * in.height() * (farthest / corner_distance(in));
+}
+
 /// Samples between green and the far end of that many pixels. None where nothing is displaced: a filtered sample at
 /// the pixel's own place is not exactly the pixel.
 int taps(double pixels, const Sampling& sampling) {
@@ -72,7 +87,7 @@ void declare_classic(const postfx::Request& in, postfx::Builder& out, double sha
 
 void declare_spectrum(const postfx::Request& in, postfx::Builder& out, double share) {
     const Sampling& sampling = samplings[std::max(0, in.level() - medium)];
-    const double pixels = in.number("strength") * in.height();
+    const double pixels = largest_distance(in);
     const bool linear = sampling.radius == 1;
     out.compose(linear ? "chromatic_aberration.glsl" : "chromatic_aberration_cubic.glsl")
         .reads("picture", out.color(), linear ? "linear" : "nearest")
@@ -87,10 +102,8 @@ void plan(const postfx::Request& in, postfx::Builder& out) {
     if (in.number("strength") == 0 && out.identity("strength is 0")) return;
     // From heights in the corner to a share of the radius. The corner is at least half a height away, so no
     // share exceeds 0.1 and the picture can't be turned inside out: the range of `strength` sees to that.
-    const double corner = 0.5 * std::hypot(1.0, double(in.width()) / in.height());
-    const double share = in.number("strength") / corner;
-    const double farthest =
-        std::abs(in.number("strength")) * in.height() * std::max(std::abs(red_end), std::abs(blue_end));
+    const double share = in.number("strength") / corner_distance(in);
+    const double farthest = std::abs(largest_distance(in)) * std::max(std::abs(red_end), std::abs(blue_end));
     if (farthest < 0.5 && out.not_called_for("visible", "no colour is displaced by half a pixel")) return;
     if (in.number("strength") == 0) return declare_spectrum(in, out, 0);
     switch (in.level()) {

@@ -1,3 +1,4 @@
+#include "chromatic_aberration_axis.glsl"
 #include "chromatic_aberration_light.glsl"
 #include "chromatic_aberration_spectrum.glsl"
 
@@ -13,11 +14,11 @@ vec2 chromatic_aberration_side(vec2 light, vec2 uv, vec2 displacement, bool is_r
 }
 
 vec3 chromatic_aberration(vec3 color, Pixel pixel, ChromaticAberrationParams params, sampler2D picture) {
-    vec2 from_center = pixel.uv - 0.5;
+    vec2 from_axis = pixel.uv - chromatic_aberration_axis();
     vec3 light = chromatic_aberration_light(color);
-    vec2 red = chromatic_aberration_side(light.rg, pixel.uv, from_center * params.red, true,
+    vec2 red = chromatic_aberration_side(light.rg, pixel.uv, from_axis * params.red, true,
                                          CHROMATIC_ABERRATION_RED_TAPS, picture);
-    vec2 blue = chromatic_aberration_side(light.bg, pixel.uv, from_center * params.blue, false,
+    vec2 blue = chromatic_aberration_side(light.bg, pixel.uv, from_axis * params.blue, false,
                                           CHROMATIC_ABERRATION_BLUE_TAPS, picture);
     return chromatic_aberration_sum(light, red, blue);
 }

@@ -1,3 +1,4 @@
+#include "chromatic_aberration_axis.glsl"
 #include "chromatic_aberration_light.glsl"
 #include "chromatic_aberration_spectrum.glsl"
 
@@ -59,7 +60,7 @@ vec2 chromatic_aberration_difference(vec2 light, vec2 position, ivec2 size, bool
 
 vec2 chromatic_aberration_cubic_side(vec2 light, Pixel pixel, float scale, bool is_red, int taps,
                                       sampler2D picture) {
-    vec2 displacement = scale * (pixel.position - 0.5 * vec2(pixel.size));
+    vec2 displacement = scale * (pixel.position - chromatic_aberration_axis() * vec2(pixel.size));
     vec2 change = vec2(0.0);
     for (int i = 1; i <= taps; ++i) {
         vec2 position = pixel.position + (float(i) / float(taps)) * displacement;

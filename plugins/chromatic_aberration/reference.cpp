@@ -94,15 +94,15 @@ double hat_integral(double constant, double slope, int k, int n) {
     return sum;
 }
 
-/// One pixel's channel `scale` larger, about the centre.
+/// One pixel's channel `scale` larger, about the optical axis.
 struct Place {
     const Image64& image;
+    double axis_x, axis_y; ///< pixels
     int x, y, level;
 
     double at(double scale, int channel) const {
         const double px = x + 0.5, py = y + 0.5;
-        return sample(image, px + (px - image.width / 2.0) * scale, py + (py - image.height / 2.0) * scale,
-                      channel, level);
+        return sample(image, px + (px - axis_x) * scale, py + (py - axis_y) * scale, channel, level);
     }
 };
 
@@ -144,11 +144,16 @@ Image64 reference(const ReferenceInput& input) {
     const double whole = index(0.464) - index(0.612);
     const double red = (index(0.612) - index(0.549)) / whole, blue = (index(0.464) - index(0.549)) / whole;
     const double diagonal = std::hypot(image.width, image.height) / 2;
-    const double share = strength * image.height / diagonal, pixels = strength * image.height;
+    const double share = strength * image.height / diagonal;
+    const double axis_x = image.width / 2.0 * (1 + input.camera.principal_point[0]);
+    const double axis_y = image.height / 2.0 * (1 + input.camera.principal_point[1]);
+    const double farthest =
+        std::hypot(std::max(axis_x, image.width - axis_x), std::max(axis_y, image.height - axis_y));
+    const double pixels = strength * image.height * (farthest / diagonal);
     Image64 result(image.width, image.height, 3);
     for (int y = 0; y < image.height; ++y) {
         for (int x = 0; x < image.width; ++x) {
-            const Place place{image, x, y, level};
+            const Place place{image, axis_x, axis_y, x, y, level};
             if (level <= low) {
                 const double part = level == classic ? focus_value(input, x, y) : 2 / 3.0;
                 result.at(x, y, 0) = place.at(share * red * part, 0);

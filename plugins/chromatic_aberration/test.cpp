@@ -425,3 +425,36 @@ TEST_CASE("the default costs few samples, and strong aberration not more than th
     CHECK(samples(8000, 8000, 0.05, ultra) == 96);
     CHECK(samples(8000, 8000, 0.05, best) == 512);
 }
+
+TEST_CASE("with a shifted lens fringes are those of the part of a larger picture") {
+    // A lens magnifies about its axis, and by the same share wherever the picture is cut.
+    const Input whole{.color = noise(192, 108, 0, 1)};
+    for (const Part& part : {Part{96, 0, 96, 108}, Part{0, 54, 192, 54}, Part{101, 61, 91, 47}}) {
+        const Input input = part_of(whole, part);
+        const double wide_strength = 0.02, strength = wide_strength * std::hypot(part.width, part.height)
+                                                      / part.height / std::hypot(192, 108) * 108;
+        for (const Level level : all_levels) {
+            // Parts reach the corner that is farthest from the axis: there are as many samples of the spectrum.
+            const Image wide = part_of(run(whole.color, wide_strength, level), part);
+            const Image result = run_effect("chromatic_aberration", input, with(strength, level));
+            // Farther from the part's border than any light moves, and than the cubic kernels reach.
+            const double farthest = 0.02 * 108 * blue_end;
+            const int border = static_cast<int>(std::ceil(farthest)) + 3;
+            double worst = 0;
+            for (int y = border; y < part.height - border; ++y) {
+                for (int x = border; x < part.width - border; ++x) {
+                    for (int c = 0; c < 3; ++c) {
+                        worst = std::max(
+                            worst, std::abs(static_cast<double>(result.at(x, y, c)) - wide.at(x, y, c)));
+                    }
+                }
+            }
+            INFO("level " << level << ", part at " << part.x << ", " << part.y);
+            // Samplers' weights have 8 fractional bits; the cubic kernels' places are rounded to 1e-5 of a pixel.
+            CHECK(worst <= (level < high ? 2 * 2 / 256.0 : 2 * 2 * 2e-5));
+            const Worst exact = worst_difference(
+                result, reference(reference_input("chromatic_aberration", input, with(strength, level))));
+            CHECK(exact.absolute <= (level < high ? 2 * 2 / 256.0 : 2 * 2 * 2e-5));
+        }
+    }
+}

@@ -258,3 +258,23 @@ TEST_CASE("axial aberration gives each colour its own circle, and none at 0") {
         }
     }
 }
+
+TEST_CASE("a shifted lens has the same circles of confusion, and the part of a larger picture") {
+    // The sensor stays parallel to the plane in focus: the circle depends on the distance along the view axis alone.
+    constexpr Part part = {.x = size / 2, .y = 0, .width = size, .height = size};
+    const Input whole = scene(noise(2 * size, size, 0, 4), layered);
+    const Input input = part_of(whole, part);
+    Input centred = input;
+    centred.camera.principal_point = {0, 0};
+    for (int level : all_levels) {
+        const Image wide = part_of(run_effect("depth_of_field", whole, small_lens(level)), part);
+        const Image result = run_effect("depth_of_field", input, small_lens(level));
+        CHECK(same_bits(result, run_effect("depth_of_field", centred, small_lens(level))));
+        // Foreground reaches 6 px from its own place, and what it covers is filled from as far again.
+        constexpr int border = 16;
+        const Part inside = {border, 0, size - 2 * border, size};
+        INFO(level_names[level]);
+        CHECK(worst_difference(part_of(result, inside), doubled_precision(part_of(wide, inside))).absolute
+              <= 4 * rounding);
+    }
+}

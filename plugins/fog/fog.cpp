@@ -44,7 +44,10 @@ constexpr int medium = 1;
 
 /// Of a pixel's ray, in lengths along the view axis.
 double longest_ray(const postfx::Request& in) {
-    const double up = in.camera().tan_half_fov, across = up * in.width() / in.height();
+    const postfx_camera& camera = in.camera();
+    const double half_height = camera.tan_half_fov, half_width = half_height * in.width() / in.height();
+    const double across = half_width * (1 + std::abs(camera.principal_point[0]));
+    const double up = half_height * (1 + std::abs(camera.principal_point[1]));
     return std::sqrt(1 + up * up + across * across);
 }
 

@@ -24,15 +24,18 @@ struct Ray {
 Ray ray_of(const ReferenceInput& input, int x, int y) {
     const Camera& camera = input.camera;
     const double half_height = camera.orthographic ? camera.vertical_extent / 2 : camera.tan_half_fov();
-    const double across = (2 * x + 1.0 - input.color.width) / input.color.height * half_height;
-    const double up = (2 * y + 1.0 - input.color.height) / input.color.height * half_height;
+    const auto& [axis_right, axis_up] = camera.principal_point;
+    const int width = input.color.width, height = input.color.height;
+    const double across = (2 * x + 1.0 - width - axis_right * width) / height * half_height;
+    const double up = (2 * y + 1.0 - height - axis_up * height) / height * half_height;
     const double z = camera.view_z(input.attachments.at("depth").at(x, y, 0));
     const double begin = camera.orthographic ? camera.near_plane : 0;
     const Vector from = camera.orthographic ? Vector{across, up, -begin} : Vector{0, 0, 0};
     const Vector to = camera.orthographic ? Vector{across, up, -begin - 1} : Vector{across, up, -1};
     const double per_view_distance = std::hypot(to[0] - from[0], to[1] - from[1], to[2] - from[2]);
-    const double height = world_height(camera, from);
-    return {height, (world_height(camera, to) - height) / per_view_distance, (z - begin) * per_view_distance};
+    const double begin_height = world_height(camera, from);
+    return {begin_height, (world_height(camera, to) - begin_height) / per_view_distance,
+            (z - begin) * per_view_distance};
 }
 
 double height_fog_thickness(const ReferenceInput& input, const Ray& ray) {

@@ -371,3 +371,40 @@ TEST_CASE("finite light stays finite whatever depth, camera and values") {
         }
     }
 }
+
+TEST_CASE("with a shifted lens fog is that of the part of a larger picture") {
+    constexpr int width = 96, height = 54;
+    const auto distance = [](int x, int y) { return y > 44 ? double(infinity) : 3 + 0.4 * x + 0.2 * y; };
+    for (const Camera& camera :
+         {looking(2, 10), placed(Camera::perspective(50, 0.1), 2, -20), looking_in_parallel(2, 20)}) {
+        const Input whole = white(width, height, camera, distance);
+        for (const Values& more : {Values{}, Values{{"start", 12}}, Values{{"quality", classic}}}) {
+            Values values = green({{"density", 0.02}, {"height_falloff", 0.3}});
+            values.insert(more.begin(), more.end());
+            const Image wide = run_effect("fog", whole, values);
+            for (const Part& part : {Part{48, 0, 48, 54}, Part{0, 27, 96, 27}, Part{5, 9, 31, 23}}) {
+                const Input input = part_of(whole, part);
+                const Image result = run_effect("fog", input, values);
+                // The bound of slanted rays, at a falloff of 0.3 and up to 70 m: 1e-6 + 0.3 * 107 * ulp = 5e-6 of a
+                // thickness, which moves the light by 0.4 of that at most; for either picture.
+                CHECK(worst_difference(result, convert<double>(part_of(three_channels(wide), part))).absolute
+                      <= 4e-6);
+                CHECK(worst_difference(result, reference(reference_input("fog", input, values))).absolute
+                      <= 4e-6);
+            }
+        }
+    }
+}
+
+TEST_CASE("the longest ray is the one to the corner that is farthest from the axis") {
+    // Nothing lies beyond 10 m along the view axis, but rays to the right are longer by sqrt(1 + 1 + 9).
+    Input input = white(9, 9, looking(0, 0), [](int, int) { return 10; });
+    input.camera.principal_point = {-2, 0};
+    const Values values = {{"start", 25}, {"density", 0.1}, {"sky", 0}};
+    const Image fogged = run_effect("fog", input, green(values));
+    CHECK(fogged.at(8, 8, 1) > 0.1f);
+    CHECK(fogged.at(0, 4, 1) == 0);
+    Values all = green(values);
+    all["skip"] = 0;
+    CHECK(same_bits(fogged, run_effect("fog", input, all)));
+}

@@ -21,8 +21,10 @@ double length(const Vector& a) {
 Vector to_eye(const ReferenceInput& input, int x, int y) {
     if (input.camera.orthographic) return {0, 0, 1};
     const double per_pixel = input.camera.tan_half_fov() / input.color.height;
-    const Vector made = {(input.color.width - 2 * x - 1) * per_pixel,
-                         (input.color.height - 2 * y - 1) * per_pixel, 1};
+    const auto& [axis_right, axis_up] = input.camera.principal_point;
+    const int width = input.color.width, height = input.color.height;
+    const Vector made = {(width - 2 * x - 1 + axis_right * width) * per_pixel,
+                         (height - 2 * y - 1 + axis_up * height) * per_pixel, 1};
     return {made[0] / length(made), made[1] / length(made), made[2] / length(made)};
 }
 

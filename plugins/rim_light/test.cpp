@@ -298,3 +298,53 @@ TEST_CASE("finite light stays finite whatever depth, normal and values") {
         }
     }
 }
+
+TEST_CASE("with a shifted lens the rim is that of the part of a larger picture") {
+    constexpr int width = 96, height = 54;
+    for (const Camera& camera : {perspective, parallel}) {
+        const Input whole{.color = black(width, height),
+                          .attachments = {{"normal", normals(width, height)}},
+                          .camera = camera};
+        for (const double level : {classic, medium}) {
+            const Values values = bare({{"width", 0.5}, {"quality", level}});
+            const Image wide = run_effect("rim_light", whole, values);
+            for (const Part& part : {Part{48, 0, 48, 54}, Part{0, 27, 96, 27}, Part{5, 9, 31, 23}}) {
+                const Input input = part_of(whole, part);
+                const Image result = run_effect("rim_light", input, values);
+                // The reference's bound for a width of a half; where the axis is, is rounded as often again.
+                const double margin = 2 * (4 * ulp / 0.5 + ulp);
+                CHECK(worst_difference(result, convert<double>(part_of(three_channels(wide), part))).absolute
+                      <= margin);
+                CHECK(
+                    worst_difference(result, reference(reference_input("rim_light", input, values))).absolute
+                    <= margin);
+            }
+        }
+    }
+}
+
+TEST_CASE("with a shifted lens normals from depth are those of the part of a larger picture") {
+    constexpr int width = 96, height = 54;
+    for (const Camera& camera : {perspective, parallel}) {
+        // A plane that is seen at 84 degrees at its farthest, where the ramp of width 1 is steep.
+        Image depth(width, height, 1);
+        for (int y = 0; y < height; ++y) {
+            for (int x = 0; x < width; ++x) {
+                const auto plane = camera.view_plane(x + 0.5, y + 0.5, width, height);
+                const double z = camera.orthographic ? 5 - 1.5 * plane[0] - plane[1]
+                                                     : 5 / (1 + 0.7 * plane[0] + 0.4 * plane[1]);
+                depth.at(x, y, 0) = static_cast<float>(camera.depth_at(z));
+            }
+        }
+        const Input whole{.color = black(width, height), .attachments = {{"depth", depth}}, .camera = camera};
+        const Values values = bare({{"width", 1}});
+        const Image wide = run_effect("rim_light", whole, values);
+        for (const Part& part : {Part{48, 0, 48, 54}, Part{0, 27, 96, 27}, Part{5, 9, 31, 23}}) {
+            const Image result = run_effect("rim_light", part_of(whole, part), values);
+            // Normals are stored as half floats: 2^-11 of each component, in both pictures. Of a plane, pixels at the
+            // border have the same normal as all others, from one side.
+            CHECK(worst_difference(result, convert<double>(part_of(three_channels(wide), part))).absolute
+                  <= 2 * std::sqrt(3) * 0x1p-11);
+        }
+    }
+}

@@ -62,7 +62,9 @@ public:
         const std::optional<double> z = distance(x, y);
         if (!z) return {};
         const double metres = tall_ / height_ * (camera_.orthographic ? 1 : *z);
-        return Vector{(x + 0.5 - 0.5 * width_) * metres, (y + 0.5 - 0.5 * height_) * metres, -*z};
+        const auto& [axis_right, axis_up] = camera_.principal_point;
+        return Vector{(x + 0.5 - 0.5 * width_ * (1 + axis_right)) * metres,
+                      (y + 0.5 - 0.5 * height_ * (1 + axis_up)) * metres, -*z};
     }
     Vector towards_eye(const Vector& point) const {
         return camera_.orthographic ? Vector{0, 0, 1} : unit(-1 * point);

@@ -37,7 +37,7 @@ void ssao_geometry_rebuilt(Pixel pixel, SsaoGeometryRebuiltParams params, sample
     z = vec4(ssao_distance(texelFetch(depth, at, 0).r));
     float here = ssao_affine(z.r);
     vec2 plane_per_pixel = 2.0 * u_frame.inverse_size * u_frame.half_extent;
-    vec2 plane = (vec2(at) + 0.5) * plane_per_pixel - u_frame.half_extent;
+    vec2 plane = (vec2(at) + 0.5) * plane_per_pixel - u_frame.half_extent * (1.0 + u_frame.principal_point);
     vec2 slope =
         vec2(ssao_slope(depth, at, ivec2(1, 0), here), ssao_slope(depth, at, ivec2(0, 1), here)) / plane_per_pixel;
     // n . (plane z, -z) = -1 gives 1/z = slope . plane + constant (perspective); z = slope . plane + constant else.

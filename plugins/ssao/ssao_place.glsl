@@ -7,7 +7,7 @@ vec2 ssao_plane_step() {
     return 2.0 * float(SSAO_BLOCK) * u_frame.inverse_size * u_frame.half_extent;
 }
 vec2 ssao_plane_start() {
-    return (u_frame.inverse_size - 1.0) * u_frame.half_extent;
+    return (u_frame.inverse_size - 1.0 - u_frame.principal_point) * u_frame.half_extent;
 }
 
 // View-space position [m].

@@ -9,7 +9,10 @@ namespace {
 
 double natural(double x, double y, const ReferenceInput& input) {
     // The sensor stands 1 away from the lens; x and y are in half picture heights.
-    const double angle = std::atan(std::hypot(x, y) * input.camera.tan_half_fov());
+    const double aspect = double(input.color.width) / input.color.height;
+    const double right = x - input.camera.principal_point[0] * aspect,
+                 up = y - input.camera.principal_point[1];
+    const double angle = std::atan(std::hypot(right, up) * input.camera.tan_half_fov());
     return std::pow(std::cos(angle), 4);
 }
 

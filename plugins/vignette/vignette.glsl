@@ -4,10 +4,11 @@ vec2 vignette_offset(Pixel pixel) {
     return vec2(2 * pixel.index + 1 - pixel.size);
 }
 
-// cos^4 of the angle between the pixel's ray and the axis. With t = tan(angle) it is 1 / (1 + t^2)^2, without any
-// trigonometry.
+// cos^4 of the angle between the pixel's ray and the optical axis. With t = tan(angle) it is 1 / (1 + t^2)^2, without
+// any trigonometry.
 float vignette_natural(Pixel pixel, VignetteParams params) {
-    vec2 slope = vignette_offset(pixel) * params.scale;
+    vec2 from_axis = vignette_offset(pixel) - u_frame.principal_point * u_frame.size;
+    vec2 slope = from_axis * params.scale;
     float cos_squared = 1.0 / (1.0 + dot(slope, slope));
     return cos_squared * cos_squared;
 }

@@ -23,18 +23,20 @@ float postfx_view_z(float depth) {
 // Not for the sky: there is no point there.
 vec3 postfx_view_position(vec2 uv, float depth) {
     float z = postfx_view_z(depth);
-    vec2 plane = (2.0 * uv - 1.0) * u_frame.half_extent;
+    vec2 plane = (2.0 * uv - 1.0 - u_frame.principal_point) * u_frame.half_extent;
     return vec3(u_frame.orthographic ? plane : plane * z, -z);
 }
 
 // Where the pixel's ray crosses the plane 1 m before the camera (perspective), or lies beside the axis (parallel) [m].
-// `pixel` is of a target of the picture's size. Mirrored pixels have mirrored values to the last bit, the centre 0.
+// `pixel` is of a target of the picture's size. With the axis in the picture's middle, mirrored pixels have mirrored
+// values to the last bit, the centre 0.
 vec2 postfx_view_plane(Pixel pixel) {
-    return (2.0 * pixel.position - u_frame.size) * (u_frame.inverse_size * u_frame.half_extent);
+    vec2 from_axis = 2.0 * pixel.position - u_frame.size - u_frame.principal_point * u_frame.size;
+    return from_axis * (u_frame.inverse_size * u_frame.half_extent);
 }
 
 // Unit vector from the camera towards the point seen at uv, in view space.
 vec3 postfx_view_direction(vec2 uv) {
     if (u_frame.orthographic) return vec3(0.0, 0.0, -1.0);
-    return normalize(vec3((2.0 * uv - 1.0) * u_frame.half_extent, -1.0));
+    return normalize(vec3((2.0 * uv - 1.0 - u_frame.principal_point) * u_frame.half_extent, -1.0));
 }

@@ -20,6 +20,7 @@ struct Frame {
     float time;           // seconds; for motion only, never for noise
     uint frame;           // counts frames; noise is a function of (pixel, frame, seed)
     uint seed;
+    vec2 principal_point; // where the optical axis lies, right and up from the picture's middle, in half widths and heights
     mat4 view_to_world;   // the camera looks down -z of its own space
 };
 

@@ -96,6 +96,15 @@ Image mirrored(const Image& image);
 /// Every number, alpha too, times the factor.
 Image scaled(Image image, float factor);
 
+/// A part of a picture, pixels from the lower left corner.
+struct Part {
+    int x = 0, y = 0, width = 1, height = 1;
+};
+Image part_of(const Image& image, const Part& part);
+/// What that part shows, by the camera that sees nothing else: the axis stays where it is in the scene, so it does not
+/// lie in the part's middle.
+Input part_of(const Input& input, const Part& part);
+
 // ---- comparing
 
 struct Worst {

@@ -16,7 +16,11 @@ struct Camera {
     bool orthographic = false;
     double vertical_fov = 45.0;    ///< degrees, perspective only
     double vertical_extent = 10.0; ///< metres that the picture's height spans, orthographic only
-    double near_plane = 0.1;       ///< metres
+    /// Where the optical axis (of parallel views the view-space origin) lies in the picture, to the right and up from
+    /// its middle, in half widths and half heights; finite. Not 0 with a shifted lens, in a part of a larger picture,
+    /// in one eye's view, and with jitter. Beyond -1..1 it is outside of the picture.
+    std::array<double, 2> principal_point = {0, 0};
+    double near_plane = 0.1;                                    ///< metres
     double far_plane = std::numeric_limits<double>::infinity(); ///< metres
     double depth_scale = 10.0; ///< see above; default is reversed-Z with infinite far plane, d = near / z
     double depth_offset = 0.0;
@@ -41,6 +45,9 @@ struct Camera {
     double depth_at(double view_z) const;
     /// tan(vertical_fov / 2); 0 for orthographic cameras.
     double tan_half_fov() const;
+    /// What the place x, y of a picture of that size (pixels from its lower left corner) looks at: where its ray
+    /// crosses the plane 1 m in front of a perspective camera, or how far beside the axis a parallel ray runs [m].
+    std::array<double, 2> view_plane(double x, double y, int width, int height) const;
 };
 
 } // namespace postfx

@@ -27,10 +27,11 @@ extern "C" {
 #define POSTFX_MODULE_SYMBOL "postfx_module_v1"
 
 /* Parameter flags. */
-#define POSTFX_PARAMETER_CONSTANT 1u     /* compiled into the shader; changing it compiles another program */
-#define POSTFX_PARAMETER_HAS_IDENTITY 2u /* `identity` is the value at which the whole effect does nothing   \
+#define POSTFX_PARAMETER_CONSTANT 1u /* compiled into the shader; changing it compiles another program */
+#define POSTFX_PARAMETER_HAS_IDENTITY                                                                        \
+    2u                                  /* `identity` is the value at which the whole effect does nothing   \
                                           */
-#define POSTFX_PARAMETER_LOGARITHMIC 4u  /* sliders should move in ratios */
+#define POSTFX_PARAMETER_LOGARITHMIC 4u /* sliders should move in ratios */
 
 typedef struct postfx_parameter {
     uint32_t struct_size;
@@ -72,6 +73,9 @@ typedef struct postfx_camera {
     double near_plane, far_plane;
     double depth_scale, depth_offset, sky_depth; /* see postfx/camera.hpp */
     double focus_distance;                       /* metres along the view axis; 0 = not known */
+    /* Where the optical axis lies in the picture, right and up from its middle, in half widths and half heights; finite,
+       not always within -1..1. 0, 0 with a lens that is not shifted. */
+    double principal_point[2];
 } postfx_camera;
 
 /* What the host knows of the scene without looking at pixels: bounds that hold for every pixel. */
@@ -79,8 +83,9 @@ typedef struct postfx_scene {
     uint32_t struct_size;
     uint32_t reserved;
     double nearest, farthest; /* metres along the view axis, of any surface; not known: 0 and infinity */
-    double reach;             /* metres from the eye to the farthest surface along its ray; infinity: not known */
-    double lowest, highest;   /* metres in the world, of any surface and the eye; not known: -infinity and infinity */
+    double reach; /* metres from the eye to the farthest surface along its ray; infinity: not known */
+    double lowest,
+        highest; /* metres in the world, of any surface and the eye; not known: -infinity and infinity */
     /* Attachments that are zero in every pixel (no emitter, no ambient light); "depth": nothing but sky. */
     const char* const* empty;
     uint32_t empty_count;

@@ -57,4 +57,11 @@ double Camera::tan_half_fov() const {
     return orthographic ? 0 : std::tan(vertical_fov * std::numbers::pi / 360);
 }
 
+std::array<double, 2> Camera::view_plane(double x, double y, int width, int height) const {
+    const double half_height = orthographic ? vertical_extent / 2 : tan_half_fov();
+    const double half_width = half_height * width / height;
+    return {(2 * x / width - 1 - principal_point[0]) * half_width,
+            (2 * y / height - 1 - principal_point[1]) * half_height};
+}
+
 } // namespace postfx

@@ -104,10 +104,11 @@ std::string frame_declaration(const Numbers& numbers) {
     };
     return fmt::format(block, "u_live_frame")
            + fmt::format("Frame u_frame = Frame({}, {}, {}, {}, {}, {}, {}, u_live_frame.time, "
-                         "u_live_frame.frame, u_live_frame.seed, u_live_frame.view_to_world);\n",
+                         "u_live_frame.frame, u_live_frame.seed, {}, u_live_frame.view_to_world);\n",
                          pair(frame.size), pair(frame.inverse_size), pair(frame.depth_affine),
                          literal(frame.sky_depth, false), literal(frame.near_plane, false),
-                         pair(frame.half_extent), frame.orthographic ? "true" : "false");
+                         pair(frame.half_extent), frame.orthographic ? "true" : "false",
+                         pair(frame.principal_point));
 }
 
 /// `target` (size and inverse size of what is drawn to) and a struct `stage_N` of each stage: members of the

@@ -18,6 +18,8 @@ FrameBlock frame_block(int width, int height, const Camera& camera) {
     block.half_extent[0] = static_cast<float>(half_height * width / height);
     block.half_extent[1] = static_cast<float>(half_height);
     block.orthographic = camera.orthographic;
+    block.principal_point[0] = static_cast<float>(camera.principal_point[0]);
+    block.principal_point[1] = static_cast<float>(camera.principal_point[1]);
     std::copy(camera.view_to_world.begin(), camera.view_to_world.end(), block.view_to_world);
     return block;
 }

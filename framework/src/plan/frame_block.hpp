@@ -7,7 +7,8 @@
 
 namespace postfx {
 
-/// std140 layout of `Frame`. The last four members change from frame to frame, the others with the plan only.
+/// std140 layout of `Frame`. Time, frame, seed and view_to_world change from frame to frame, the others with the plan
+/// only.
 struct FrameBlock {
     float size[2], inverse_size[2];
     float depth_affine[2];
@@ -16,7 +17,7 @@ struct FrameBlock {
     std::int32_t orthographic;
     float time;
     std::uint32_t frame, seed;
-    float padding[2];
+    float principal_point[2];
     float view_to_world[16];
 };
 static_assert(sizeof(FrameBlock) == 128);

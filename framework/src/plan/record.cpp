@@ -340,6 +340,7 @@ postfx_camera abi_camera(const Camera& camera) {
     abi.depth_offset = camera.depth_offset;
     abi.sky_depth = camera.sky_depth;
     abi.focus_distance = camera.focus_distance;
+    std::copy(camera.principal_point.begin(), camera.principal_point.end(), abi.principal_point);
     return abi;
 }
 
