@@ -20,12 +20,14 @@ double degrees(double radians) {
 } // namespace
 
 void DepthOptions::declare(CLI::App& app) {
-    app.add_option(
-           "--depth-kind", kind_,
-           "What a depth sample means: z (metres along the view axis), distance (metres from the camera),\n"
-           "window (0 near, 1 far), window-reversed (1 near, 0 far), window-reversed-infinite (near/z)")
-        ->check(CLI::IsMember({"z", "distance", "window", "window-reversed", "window-reversed-infinite"}))
-        ->capture_default_str();
+    kind_option_ =
+        app.add_option(
+               "--depth-kind", kind_,
+               "What a depth sample means: z (metres along the view axis), distance (metres from the "
+               "camera),\n"
+               "window (0 near, 1 far), window-reversed (1 near, 0 far), window-reversed-infinite (near/z)")
+            ->check(CLI::IsMember({"z", "distance", "window", "window-reversed", "window-reversed-infinite"}))
+            ->capture_default_str();
     app.add_option("--depth-unit", depth_unit_, "Metres per unit of a z or distance sample")
         ->check(CLI::PositiveNumber)
         ->capture_default_str();
@@ -52,7 +54,7 @@ void DepthOptions::declare(CLI::App& app) {
         ->check(CLI::PositiveNumber);
 }
 
-Camera DepthOptions::camera(int width, int height) const {
+Camera DepthOptions::camera(int width, int height, std::optional<double> told_fov) const {
     if (vertical_fov_ && focal_length_) throw Error("--fov and --focal-length exclude each other");
     if (orthographic_ && (vertical_fov_ || focal_length_)) throw Error("--orthographic has no field of view");
     if (!projection_.empty() && (near_ || far_ || vertical_fov_ || focal_length_ || orthographic_)) {
@@ -82,7 +84,7 @@ Camera DepthOptions::camera(int width, int height) const {
         camera.far_plane = std::numeric_limits<double>::infinity();
         return camera;
     }
-    double fov = vertical_fov_.value_or(default_fov);
+    double fov = vertical_fov_.value_or(told_fov.value_or(default_fov));
     if (focal_length_) fov = degrees(2 * std::atan(sensor_height_ / (2 * *focal_length_)));
     Camera camera = Camera::perspective(fov, near_plane, far_.value_or(1), kind);
     if (!projection_.empty()) apply_projection(camera, width, height);

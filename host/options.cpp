@@ -8,7 +8,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cctype>
 #include <charconv>
+#include <cmath>
 #include <cstdio>
 
 #include <unistd.h>
@@ -77,20 +80,42 @@ Chain read_chain_named(const std::string& name_or_path, const Catalog& catalog) 
 
 void OutputOptions::declare(CLI::App& app, const std::string& help) {
     app.add_option("-o,--output", path_, help + "; - is standard output")->required()->type_name("FILE");
-    app.add_option("--format", kind_, "Kind of picture, whatever FILE is called: png, exr, hdr or pfm")
+    app.add_option("--format", kind_, "Kind of picture, whatever FILE is called: png, jpg, exr, hdr or pfm")
         ->type_name("KIND")
         ->default_str("");
+    app.add_option("--bits", bits_, "Per channel of a PNG")
+        ->check(CLI::IsMember({8, 16}))
+        ->capture_default_str();
+    app.add_option("--quality", quality_, "Of a JPEG, 0 to 1")
+        ->check(CLI::Range(0.0, 1.0))
+        ->capture_default_str();
 }
+
+std::string kind_of(const PictureFile& file) {
+    std::string kind = file.kind.empty() ? file.path.extension().string() : "." + file.kind;
+    std::transform(kind.begin(), kind.end(), kind.begin(),
+                   [](unsigned char letter) { return static_cast<char>(std::tolower(letter)); });
+    return kind == ".jpeg" ? "jpg" : kind.substr(std::min<std::size_t>(1, kind.size()));
+}
+
+const CLI::Validator finite_number(
+    [](const std::string& text) {
+        double number = 0;
+        const bool good = CLI::detail::lexical_cast(text, number) && std::isfinite(number);
+        return good ? std::string() : fmt::format("{} is not a finite number", text);
+    },
+    "");
 
 PictureFile OutputOptions::file() const {
     const bool standard_output = path_ == "-" || path_ == "/dev/stdout" || path_ == "/dev/fd/1";
-    PictureFile file{standard_output ? "-" : path_, kind_};
+    const PictureFile file{standard_output ? "-" : path_, kind_, bits_, quality_};
     if (standard_output && kind_.empty())
-        throw Error(
-            "--format is needed for a picture on standard output, which has no ending: png, exr, hdr or pfm");
+        throw Error("--format is needed for a picture on standard output, which has no ending: png, jpg, "
+                    "exr, hdr or pfm");
     if (standard_output && ::isatty(STDOUT_FILENO) != 0)
         throw Error("standard output is a terminal, which shows no picture; send it to a file or a program");
     check_writable_kind(file.path, file.kind);
+    if (bits_ == 16 && kind_of(file) != "png") throw Error("--bits 16 is for a PNG");
     check_output_folder(file.path);
     return file;
 }

@@ -59,13 +59,21 @@ Chain read_chain_named(const std::string& name_or_path, const Catalog& catalog);
 /// Where a picture is written, and as what kind of file.
 struct PictureFile {
     std::filesystem::path path;
-    std::string kind{}; ///< "png", "exr", ...; "" = as the path's ending says
+    std::string kind{};    ///< "png", "exr", ...; "" = as the path's ending says
+    int bits = 8;          ///< of a PNG
+    double quality = 0.92; ///< of a JPEG, 0..1
 
     /// Then nothing else may be printed there.
     bool is_standard_output() const { return path == "-"; }
 };
 
-/// -o and --format.
+/// "png", "exr", ...: the kind that is asked for, else the path's ending in small letters; jpeg is jpg.
+std::string kind_of(const PictureFile& file);
+
+/// A number that is neither infinite nor NaN.
+extern const CLI::Validator finite_number;
+
+/// -o, --format, --bits and --quality.
 class OutputOptions {
 public:
     /// `help`: of -o; the kinds of files and "-" are told behind it.
@@ -75,6 +83,8 @@ public:
 
 private:
     std::string path_, kind_;
+    int bits_ = 8;
+    double quality_ = 0.92;
 };
 
 /// "1280x720". Throws Error for anything else, or a side of 0 or above 16384.

@@ -110,7 +110,7 @@ private:
         }
         const Textures textures = textures_of(renderer.render(facts.width, facts.height, frame.time, wanted));
         runner.run(textures, frame, Timing::off, report_options_.watch());
-        write_picture(runner, output_of(index), false);
+        write_picture(runner, output_of(index));
         for (const auto& [name, file] : saves_) {
             save_attachment(textures.at(name), name, frames_ == 1 ? file : numbered(file, index, frames_),
                             facts);

@@ -102,7 +102,7 @@ public:
         fmt::print("{}", help);
         loop(window, runner, renderer, bounds);
         budget_.reset(); // while there is a context
-        if (!output_.empty()) write_picture(runner, {output_}, false);
+        if (!output_.empty()) write_picture(runner, {output_});
         tell_debug_messages();
         return Status::success;
     }
@@ -167,7 +167,7 @@ private:
             if (key == GLFW_KEY_ESCAPE) window.close();
             if (key == GLFW_KEY_F12) {
                 const std::filesystem::path file = next_screenshot();
-                write_picture(runner, {file}, false);
+                write_picture(runner, {file});
                 fmt::print("wrote {}\n", file.string());
             }
         }

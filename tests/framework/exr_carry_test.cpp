@@ -82,7 +82,8 @@ std::vector<std::string> rewrite(const std::filesystem::path& from, const std::f
     const ImageSource source = open_image(from);
     Image image = read_image(source, request).image;
     change(image);
-    return write_image(to, image, {.origin = {&source, request}});
+    const Origin origin{&source, request};
+    return write_image(to, image, {.origin = &origin});
 }
 
 void nothing(Image&) {}
@@ -228,11 +229,11 @@ TEST_CASE("Grey stays grey, or gets the channels that colour needs") {
         image.values[i] = grey.values[i / 3];
     for (int channel = 0; channel < 3; ++channel)
         image.at(1, 1, channel) = 5;
-    CHECK(write_image(to, image, {.origin = {&source, {}}}).empty());
+    CHECK(write_image(to, image, {.origin = &origin}).empty());
     CHECK(read_image(to).image.channels == 1);
     CHECK(read_image(to).image.at(1, 1, 0) == 5);
     image.at(1, 1, 2) = 6;
-    CHECK(write_image(to, image, {.origin = {&source, {}}}).size() == 1);
+    CHECK(write_image(to, image, {.origin = &origin}).size() == 1);
     CHECK(same_values(read_image(to).image, image));
     CHECK(raw(from, 0, "Z") == raw(to, 0, "Z"));
 }
@@ -255,7 +256,7 @@ TEST_CASE("Other kinds of files carry nothing") {
     const auto from = directory / "a.pfm", to = directory / "b.exr";
     write_image(from, Image(2, 2, 3, 0.5f));
     const ImageSource source = open_image(from);
-    CHECK(write_image(to, Image(2, 2, 3, 0.25f), {.origin = {&source, {}}}).empty());
+    CHECK(write_image(to, Image(2, 2, 3, 0.25f), {.origin = &origin}).empty());
     CHECK(read_image(to).image.at(0, 0, 0) == 0.25f);
 }
 

@@ -76,6 +76,7 @@ struct ImageFile {
     Coding coding{};
     std::string layer{}, view{}; ///< what was taken, "" where the file has only one
     ShotData shot{};
+    bool has_depth_map = false; ///< role color: the same file has a depth map of its own, as phones make them
     std::optional<DepthScale> depth_scale{}; ///< role depth only
     std::optional<NormalSpace>
         normal_space{};                  ///< role normal only: by the layer's name, or who wrote the file
@@ -104,7 +105,7 @@ struct WriteOptions {
     /// .exr: write the origin, if it is an EXR, with the picture in place of the one that was taken: other layers,
     /// parts, views, windows and attributes stay as they are, bit for bit, and so do pixels that have not changed.
     /// `half` is then ignored: channels keep their types.
-    Origin origin{};
+    const Origin* origin = nullptr;
     bool half = false;     ///< .exr: half instead of float; beyond 65504 becomes infinity
     int bits = 8;          ///< .png: 8 or 16
     double quality = 0.92; ///< .jpg: 0..1

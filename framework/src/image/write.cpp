@@ -142,14 +142,14 @@ std::string encoded_codes(const Path& file, const BasicImage<std::uint8_t>& code
 }
 
 bool carries(const WriteOptions& options) {
-    return options.origin.source && formats::exr.recognises(options.origin.source->bytes);
+    return options.origin && formats::exr.recognises(options.origin->source->bytes);
 }
 
 std::string encoded(const Path& file, const Image& image, const WriteOptions& options,
                     std::vector<std::string>& remarks) {
     const std::string ending = ending_of_kind(file, options.kind);
     if (ending == ".exr" && carries(options))
-        return formats::exr_bytes_carrying(file, image, options.origin, remarks);
+        return formats::exr_bytes_carrying(file, image, *options.origin, remarks);
     if (ending == ".png" && options.bits == 16)
         return formats::png_bytes(file, display_codes<std::uint16_t>(image));
     if (ending == ".png" || is_jpeg(ending))
