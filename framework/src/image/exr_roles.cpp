@@ -360,7 +360,7 @@ LayerChoice choice_by_name(const ExrContents& contents, const LayerWish& wish, c
     if (found.empty()) found = layers_almost_called(contents, wish.layer);
     std::vector<std::string> views;
     for (const ExrLayer& layer : found) {
-        if (contents.is_in_view(layer, view)) return taken(layer, wish.role);
+        if (layer.view.empty() || layer.view == view) return taken(layer, wish.role);
         views.push_back(layer.view);
     }
     // A name that holds its view says which one is meant.
