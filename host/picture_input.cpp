@@ -10,6 +10,8 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <filesystem>
+#include <system_error>
 #include <utility>
 
 namespace postfx::host {
@@ -55,28 +57,13 @@ void PictureOptions::declare(CLI::App& app) {
     image("--normal", normal_, "Its normals; codes as 0.5 + n/2");
     image("--emission", emission_, "Light that surfaces emit, part of the picture");
     image("--ambient", ambient_, "The picture's share that occlusion may darken");
-    const auto layer = [&](const char* name, std::string& wanted, const char* help) {
-        app.add_option(name, wanted, help)->type_name("LAYER")->default_str("");
-    };
-    layer("--color-layer", color_layer_, "Layer of an EXR to take for the picture; `inspect` lists them");
-    layer("--depth-layer", depth_layer_, "Layer or channel of an EXR to take for the depth");
-    layer("--normal-layer", normal_layer_, "Layer of an EXR to take for the normals");
-    app.add_option("--view", view_,
-                   "View of a stereo file, for everything that is read (default: the file's own)")
-        ->type_name("VIEW")
-        ->default_str("");
-    app.add_option_function<std::string>(
-           "--adapt", [this](const std::string& how) { bradford_ = how == "bradford"; },
-           "What becomes of another colour space's white: none (it keeps its tint) or bradford (it becomes "
-           "white)")
-        ->check(CLI::IsMember({"none", "bradford"}))
-        ->default_str("none");
     app.add_option("--focus-at", focus_at_,
                    "Focus the camera on what is seen there: shares of width and height from the top left")
         ->type_name("X,Y")
         ->default_str("");
     app.add_flag("--strict", strict_,
                  "Refuse files that have to be brought into shape, instead of telling so");
+    layer_options_.declare(app);
     depth_options_.declare(app);
 }
 
@@ -98,10 +85,7 @@ public:
 private:
     void read_color() {
         input_.source = source(options_.color_);
-        input_.request = {.role = Role::color,
-                          .layer = options_.color_layer_,
-                          .view = options_.view_,
-                          .adaptation = options_.bradford_ ? Adaptation::bradford : Adaptation::none};
+        input_.request = options_.layer_options_.color_request();
         input_.color = file(*input_.source, input_.request);
         input_.color.image = widened(input_.color.image);
         input_.camera = options_.depth_options_.camera(width(), height(),
@@ -112,7 +96,7 @@ private:
         const bool own = options_.depth_.empty();
         if (own && !input_.color.has_depth_map) return;
         const std::string& name = own ? options_.color_ : options_.depth_;
-        ImageFile depth = measurement(Role::depth, name, options_.depth_layer_);
+        ImageFile depth = measurement(Role::depth, name);
         const DepthOptions& meaning = options_.depth_options_;
         if (depth.depth_scale && !meaning.is_told())
             depth.image = metres_of(std::move(depth.image), *depth.depth_scale);
@@ -121,7 +105,7 @@ private:
 
     void read_normal() {
         if (options_.normal_.empty()) return;
-        ImageFile normal = measurement(Role::normal, options_.normal_, options_.normal_layer_);
+        ImageFile normal = measurement(Role::normal, options_.normal_);
         if (normal.coding.numbers == Coding::Numbers::codes) {
             for (float& value : normal.image.values)
                 value = value * 2 - 1;
@@ -131,16 +115,14 @@ private:
 
     void read_light(Role role, const std::string& name) {
         if (name.empty()) return;
-        ImageRequest request = beside_the_color(role, name, "");
-        request.adaptation = input_.request.adaptation;
-        const ImageFile light = file(*source(name), request);
+        const ImageFile light = file_in(role, name);
         check_size(light.image, name);
         input_.attachments[name_of(role)] = widened(light.image);
     }
 
     /// A map that belongs to the picture, turned as the picture was.
-    ImageFile measurement(Role role, const std::string& name, const std::string& layer) {
-        ImageFile map = file(*source(name), beside_the_color(role, name, layer));
+    ImageFile measurement(Role role, const std::string& name) {
+        ImageFile map = file_in(role, name);
         const int orientation = input_.color.shot.orientation;
         if (map.shot.orientation == 1
             && belonging_of(map.image, width(), height(), orientation) == Belonging::stored) {
@@ -152,15 +134,6 @@ private:
         }
         check_size(map.image, name);
         return map;
-    }
-
-    ImageRequest beside_the_color(Role role, const std::string& name, const std::string& layer) const {
-        ImageRequest request{.role = role, .layer = layer, .view = options_.view_};
-        if (name == options_.color_) {
-            request.beside = input_.color.layer;
-            if (request.view.empty()) request.view = input_.color.view;
-        }
-        return request;
     }
 
     void focus(PicturePoint point) {
@@ -175,10 +148,17 @@ private:
         tell(options_.color_, {fmt::format("focused {:.4g} m away", *distance)});
     }
 
+    /// A pipe gives its bytes only once, so one file is known by any of its names.
     std::shared_ptr<const ImageSource> source(const std::string& name) {
-        std::shared_ptr<const ImageSource>& known = sources_[name];
-        if (!known) known = std::make_shared<const ImageSource>(open_image(name));
-        return known;
+        std::error_code ignored;
+        for (const auto& known : sources_)
+            if (known->name == name || std::filesystem::equivalent(known->name, name, ignored)) return known;
+        return sources_.emplace_back(std::make_shared<const ImageSource>(open_image(name)));
+    }
+
+    ImageFile file_in(Role role, const std::string& name) {
+        const std::shared_ptr<const ImageSource> from = source(name);
+        return file(*from, options_.layer_options_.request(role, *from, {*input_.source, input_.color}));
     }
 
     ImageFile file(const ImageSource& source, const ImageRequest& request) const {
@@ -204,7 +184,7 @@ private:
     const PictureOptions& options_;
     bool quiet_;
     PictureInput input_;
-    std::map<std::string, std::shared_ptr<const ImageSource>> sources_;
+    std::vector<std::shared_ptr<const ImageSource>> sources_;
 };
 
 PictureInput PictureOptions::read(bool quiet) const {

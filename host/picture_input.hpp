@@ -2,6 +2,7 @@
 #pragma once
 
 #include "depth_input.hpp"
+#include "layer_input.hpp"
 #include "photo_camera.hpp"
 
 #include <image/files.hpp>
@@ -35,14 +36,16 @@ public:
     /// their pixels and was followed is told unless `quiet`. Throws Error naming file and option.
     PictureInput read(bool quiet) const;
     bool strict() const { return strict_; }
+    /// Does an EXR go out with all that was in it?
+    bool carries() const { return layer_options_.carries(); }
 
 private:
     class Reading;
 
     std::string color_, depth_, normal_, emission_, ambient_;
-    std::string color_layer_, depth_layer_, normal_layer_, view_;
     std::string focus_at_;
-    bool bradford_ = false, strict_ = false;
+    bool strict_ = false;
+    LayerOptions layer_options_;
     DepthOptions depth_options_;
 };
 

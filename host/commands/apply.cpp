@@ -95,7 +95,7 @@ private:
     /// that is to be divided by it is divided at the very end, so that effects work on what reaches the lens.
     Written written_of(PictureInput& input, const PictureFile& output) const {
         Written written;
-        written.origin = {input.source.get(), input.request};
+        if (picture_options_.carries()) written.origin = {input.source.get(), input.request};
         const Coding::Alpha had = input.color.coding.alpha;
         if (had == Coding::Alpha::none) return written;
         written.alpha_of_file = alpha_.empty()         ? usual_alpha(output)
