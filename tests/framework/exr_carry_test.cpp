@@ -189,6 +189,19 @@ TEST_CASE("Parts and views that are not the picture's stay") {
     CHECK(same_values(read_image(to, {.view = "right"}).image, expected));
 }
 
+TEST_CASE("Deep parts are carried as they are packed") {
+    const TemporaryDirectory directory;
+    const auto from = directory / "a.exr", to = directory / "b.exr";
+    write_deep_part(from);
+    CHECK(rewrite(from, to, [](Image& image) { image.at(1, 1, 2) += 1; }).empty());
+    CHECK(header_in(to, 1).type() == Imf::DEEPSCANLINE);
+    // What the part's rows are packed into is at the end of both files; their heads have the same length.
+    const std::string before = file_bytes(from), after = file_bytes(to);
+    const std::size_t deep_bytes =
+        2 * (4 + 4 + 3 * 8 + 2); // per row: part, y, three sizes, at least a byte each
+    CHECK(before.substr(before.size() - deep_bytes) == after.substr(after.size() - deep_bytes));
+}
+
 TEST_CASE("The file's colour space stays, and what is written is right in it") {
     const TemporaryDirectory directory;
     const auto from = directory / "a.exr", to = directory / "b.exr";
@@ -237,7 +250,7 @@ TEST_CASE("Grey stays grey, or gets the channels that colour needs") {
     CHECK(raw(from, 0, "Z") == raw(to, 0, "Z"));
 }
 
-TEST_CASE("What becomes of a preview, smaller levels, large numbers and truncated parts is told") {
+TEST_CASE("What becomes of a preview and of large numbers is told") {
     const TemporaryDirectory directory;
     const auto from = directory / "a.exr", to = directory / "b.exr";
     Imf::Header header = header_of(box(0, 0, 3, 2), box(0, 0, 3, 2));
@@ -248,6 +261,25 @@ TEST_CASE("What becomes of a preview, smaller levels, large numbers and truncate
     const auto remarks = rewrite(from, to, [](Image& image) { image.at(1, 1, 0) = 1e6f; });
     CHECK(remarks.size() == 2); // the preview; a half that is infinite now
     CHECK_FALSE(header_in(to).hasPreviewImage());
+}
+
+TEST_CASE("Smaller levels of a changed picture are left out, and told") {
+    const TemporaryDirectory directory;
+    const auto from = directory / "a.exr", to = directory / "b.exr";
+    Imf::Header header = header_of(box(0, 0, 40, 30), box(0, 0, 40, 30));
+    header.setTileDescription(Imf::TileDescription(16, 8, Imf::MIPMAP_LEVELS));
+    const Planes planes(header, {"R", "G", "B", "Z"});
+    {
+        Imf::TiledOutputFile output(from.c_str(), header);
+        output.setFrameBuffer(planes.frame);
+        for (int level = 0; level < output.numLevels(); ++level)
+            output.writeTiles(0, output.numXTiles(level) - 1, 0, output.numYTiles(level) - 1, level);
+    }
+    CHECK(rewrite(from, to, nothing).empty());
+    CHECK(header_in(to).tileDescription().mode == Imf::MIPMAP_LEVELS);
+    CHECK(rewrite(from, to, [](Image& image) { image.at(1, 1, 0) = 7; }).size() == 1);
+    CHECK(header_in(to).tileDescription().mode == Imf::ONE_LEVEL);
+    CHECK(raw(from, 0, "Z") == raw(to, 0, "Z"));
 }
 
 TEST_CASE("Other kinds of files carry nothing") {

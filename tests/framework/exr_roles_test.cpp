@@ -329,4 +329,5 @@ TEST_CASE("Views by name where no attribute tells them") {
         single(all({channels("left", "RGB"), channels("right", "RGB"), {"depth.Z"}}), {"right", "left"});
     CHECK(chosen(shared, {.role = Role::depth}) == "depth");
     CHECK(refuses(shared, {.role = Role::depth, .view = "left"}, {"no depth", "\"left\"", "\"right\""}));
+    CHECK(chosen(shared, {.role = Role::depth, .layer = "depth", .view = "left"}) == "depth");
 }

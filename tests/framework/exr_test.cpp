@@ -238,7 +238,18 @@ TEST_CASE("A small file asks for little memory") {
     CHECK(read_image(file).image.width == 4096);
 }
 
-TEST_CASE("A truncated or deep part is in nobody's way") {
+TEST_CASE("A deep part is in nobody's way") {
+    const TemporaryDirectory directory;
+    const std::filesystem::path file = directory / "a.exr";
+    write_deep_part(file);
+    const ImageFile read = read_image(file);
+    check_values(read.image, box(0, 0, 2, 2), box(0, 0, 2, 2));
+    REQUIRE(read.warnings.size() == 1);
+    CHECK(read.warnings[0].find("part 2 holds deep data") != std::string::npos);
+    CHECK(describe_image(open_image(file)).parts.size() == 2);
+}
+
+TEST_CASE("A truncated part is in nobody's way") {
     const TemporaryDirectory directory;
     const std::filesystem::path file = directory / "a.exr";
     write_parts(file, {{"rgba", "", {"R", "G", "B"}}, {"depth", "", {"Z"}}});

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <ImfChannelList.h>
+#include <ImfDeepFrameBuffer.h>
+#include <ImfDeepScanLineOutputPart.h>
 #include <ImfFrameBuffer.h>
 #include <ImfHeader.h>
 #include <ImfMultiPartOutputFile.h>
@@ -84,6 +86,36 @@ inline void write_parts(const std::filesystem::path& file, const std::vector<Par
         out.setFrameBuffer(planes[part].frame);
         out.writePixels(window.max.y - window.min.y + 1);
     }
+}
+
+/// A flat part "rgba" and a part "deep" with one sample, 3, of Z in each pixel.
+inline void write_deep_part(const std::filesystem::path& file, const Box& window = box(0, 0, 2, 2)) {
+    Imf::Header flat = header_of(window, window), deep = flat;
+    flat.setName("rgba");
+    flat.setType(Imf::SCANLINEIMAGE);
+    const Planes planes(flat, {"R", "G", "B"});
+    deep.setName("deep");
+    deep.setType(Imf::DEEPSCANLINE);
+    deep.compression() = Imf::ZIPS_COMPRESSION;
+    deep.channels().insert("Z", Imf::Channel(Imf::FLOAT));
+    const auto pixels =
+        static_cast<std::size_t>(window.max.x - window.min.x + 1) * (window.max.y - window.min.y + 1);
+    std::vector<unsigned> counts(pixels, 1);
+    float sample = 3;
+    std::vector<float*> samples(pixels, &sample);
+    Imf::DeepFrameBuffer frame;
+    frame.insertSampleCountSlice(Imf::Slice::Make(Imf::UINT, counts.data(), window));
+    const Imf::Slice places = Imf::Slice::Make(Imf::UINT, samples.data(), window, sizeof(float*),
+                                               sizeof(float*) * (window.max.x - window.min.x + 1));
+    frame.insert("Z", Imf::DeepSlice(Imf::FLOAT, places.base, places.xStride, places.yStride, sizeof sample));
+    const Imf::Header headers[2] = {flat, deep};
+    Imf::MultiPartOutputFile output(file.c_str(), headers, 2);
+    Imf::OutputPart lines(output, 0);
+    lines.setFrameBuffer(planes.frame);
+    lines.writePixels(window.max.y - window.min.y + 1);
+    Imf::DeepScanLineOutputPart deep_lines(output, 1);
+    deep_lines.setFrameBuffer(frame);
+    deep_lines.writePixels(window.max.y - window.min.y + 1);
 }
 
 } // namespace postfx::testing
