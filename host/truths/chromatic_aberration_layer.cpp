@@ -2,7 +2,7 @@
 // magnification.
 #include "drawn_scene.hpp"
 #include "lens_spectrum.hpp"
-#include "rows.hpp"
+#include <image/rows.hpp>
 #include "sampling.hpp"
 #include "spline_picture.hpp"
 #include "truth.hpp"

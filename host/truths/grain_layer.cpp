@@ -1,7 +1,7 @@
 // Film grain by its making: layers of discs, seen through the pixels' squares.
 #include "drawn_scene.hpp"
 #include "film.hpp"
-#include "rows.hpp"
+#include <image/rows.hpp>
 #include "sampling.hpp"
 #include "truth.hpp"
 

@@ -4,7 +4,7 @@
 #include "drawn_scene.hpp"
 #include "metric.hpp"
 #include "rim_share.hpp"
-#include "rows.hpp"
+#include <image/rows.hpp>
 #include "sampling.hpp"
 #include "scene_rays.hpp"
 #include "view_rays.hpp"

@@ -2,7 +2,7 @@
 #include "drawn_scene.hpp"
 #include "height_field.hpp"
 #include "occluded_light.hpp"
-#include "rows.hpp"
+#include <image/rows.hpp>
 #include "sampling.hpp"
 #include "truth.hpp"
 

@@ -6,7 +6,7 @@
 #include <thread>
 #include <vector>
 
-namespace postfx::host {
+namespace postfx {
 
 /// Every row once. `work` may be called by several threads at a time, and does not throw.
 inline void for_each_row(int rows, const std::function<void(int)>& work) {
@@ -20,4 +20,4 @@ inline void for_each_row(int rows, const std::function<void(int)>& work) {
     }
 }
 
-} // namespace postfx::host
+} // namespace postfx
