@@ -74,7 +74,7 @@ void declare_spectrum(const postfx::Request& in, postfx::Builder& out, double sh
     const Sampling& sampling = samplings[std::max(0, in.level() - medium)];
     const double pixels = in.number("strength") * in.height();
     const bool linear = sampling.radius == 1;
-    out.compose(linear ? "chromatic_aberration.glsl" : "chromatic_aberration_cubic.glsl")
+    out.compose(linear ? "chromatic_aberration.glsl" : "chromatic_aberration_areas.glsl")
         .reads("picture", out.color(), linear ? "linear" : "nearest")
         .value("red", share * red_end)
         .value("blue", share * blue_end)
