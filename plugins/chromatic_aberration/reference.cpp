@@ -57,8 +57,8 @@ private:
         const double third = (right - left) / 3;
         if ((mean - left) * (right - mean) <= 0 || std::abs(2 * mean - left - right) > std::abs(third)) {
             const double second = 6 * (left + right - 2 * mean); // derivative
-            double share = 0;
-            if (fourth_order_) {
+            double share = mean > left && mean > right ? 1 : 0;  // the top of a bright pixel stays
+            if (fourth_order_ && share == 0) {
                 const double sign = second < 0 ? -1 : 1;
                 const double least = std::min({sign * bend(i - 1), sign * bend(i), sign * bend(i + 1)});
                 share = second == 0 ? 0 : std::clamp(1.25 * least / std::abs(second), 0.0, 1.0);
