@@ -1,4 +1,3 @@
-#include "chromatic_aberration_light.glsl"
 #include "chromatic_aberration_spectrum.glsl"
 
 // A pixel of the result shows the mean of an area of the picture, 1 + d times as wide as a pixel, and the areas of
@@ -69,7 +68,7 @@ vec2 chromatic_aberration_mean(vec2 cells[CHROMATIC_ABERRATION_CELLS], int met, 
 // How a pixel differs from `light` in two of its channels.
 vec2 chromatic_aberration_at(ivec2 place, vec2 light, ivec2 size, bool is_red, sampler2D picture) {
     vec3 found = texelFetch(picture, clamp(place, ivec2(0), size - 1), 0).rgb;
-    return chromatic_aberration_light(is_red ? found.rg : found.bg) - light;
+    return postfx_light(is_red ? found.rg : found.bg) - light;
 }
 
 // The same of the mean over the area that the pixel shows where the image is 1 + scale times as large, line by line.
@@ -88,7 +87,7 @@ vec2 chromatic_aberration_difference(vec2 light, Pixel pixel, float scale, bool 
 }
 
 vec3 chromatic_aberration_areas(vec3 color, Pixel pixel, ChromaticAberrationAreasParams params, sampler2D picture) {
-    vec3 light = chromatic_aberration_light(color);
+    vec3 light = postfx_light(color);
     vec2 red = vec2(0.0), blue = vec2(0.0);
     for (int i = 1; i <= CHROMATIC_ABERRATION_RED_TAPS; ++i) {
         float scale = float(i) / float(CHROMATIC_ABERRATION_RED_TAPS) * params.red;

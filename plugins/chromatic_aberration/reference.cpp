@@ -97,15 +97,14 @@ double area_mean(const Image64& image, int x, int y, double scale, int channel, 
     return column.mean(below, below + 1 + scale);
 }
 
-/// A sample of a filtered texture is counted() as a whole.
 double linear_sample(const Image64& image, double x, double y, int channel) {
     const double left = std::floor(x - 0.5), below = std::floor(y - 0.5);
     const double right_share = x - 0.5 - left, upper_share = y - 0.5 - below;
     const auto line = [&](double j) {
-        return texel(image, left, j, channel) * (1 - right_share)
-               + texel(image, left + 1, j, channel) * right_share;
+        return counted(texel(image, left, j, channel)) * (1 - right_share)
+               + counted(texel(image, left + 1, j, channel)) * right_share;
     };
-    return counted(line(below) * (1 - upper_share) + line(below + 1) * upper_share);
+    return line(below) * (1 - upper_share) + line(below + 1) * upper_share;
 }
 
 /// Integrals over 0..1 of (constant + slope * t) times the hat function of node k of n + 1, by Simpson's
@@ -189,9 +188,9 @@ Image64 reference(const ReferenceInput& input) {
             const auto half = [&](int channel, double end, double constant, double slope) {
                 return half_spectrum(place, channel, share * end, pixels * end, constant, slope);
             };
-            result.at(x, y, 0) = half(0, red, 0, 2);
-            result.at(x, y, 1) = half(1, red, 1, -1) + half(1, blue, 1, -1);
-            result.at(x, y, 2) = half(2, blue, 0, 2);
+            result.at(x, y, 0) = counted(half(0, red, 0, 2));
+            result.at(x, y, 1) = counted(half(1, red, 1, -1) + half(1, blue, 1, -1));
+            result.at(x, y, 2) = counted(half(2, blue, 0, 2));
         }
     }
     return result;
