@@ -181,7 +181,7 @@ double occlusion(const Scene& scene, int x, int y, double radius, double falloff
 /// Share of 80 pixels in a grid that are nearer by less than the radius.
 double classic_occlusion(const Scene& scene, int x, int y, int width, int height, double radius) {
     const std::optional<double> own = scene.distance(x, y);
-    if (!own) return 0;
+    if (!own || !scene.normal(x, y)) return 0;
     const int stride = 1 + height / 240;
     int nearer = 0;
     for (int i = 0; i < 81; ++i) {

@@ -74,6 +74,31 @@ std::string spread(const Image& result, const Image& color) {
                : fmt::format("{} pixels became no light that a half float holds, the first {}", count, first);
 }
 
+/// A few pixels, far and near ones among them where there is depth.
+Image with_spots(Image color, float value) {
+    for (const auto& [x, y] : {std::pair{1, 4}, std::pair{4, 1}, std::pair{4, 4}, std::pair{6, 7}}) {
+        float* spot = color.pixel(color.width * x / 8, color.height * y / 8);
+        std::fill(spot, spot + color.channels, value);
+    }
+    return color;
+}
+
+/// Where two pictures differ by more than 1e-4 although the pixel's own colour is light: sums of 65504 and of what it
+/// stands for may be added up in another order.
+std::string unlike(const Image& result, const Image& expected, const Image& color) {
+    for (int y = 0; y < result.height; ++y) {
+        for (int x = 0; x < result.width; ++x) {
+            if (!is_light(color.pixel(x, y))) continue;
+            for (int c = 0; c < 3; ++c) {
+                const float found = result.at(x, y, c), wanted = expected.at(x, y, c);
+                if (std::abs(found - wanted) <= 1e-4f * (1 + std::abs(wanted))) continue;
+                return fmt::format("({}, {}) = {}, beside infinite pixels {}", x, y, found, wanted);
+            }
+        }
+    }
+    return "";
+}
+
 struct Tally {
     int cases = 0;
     int skipped = 0; ///< rightly nothing to do: identity values, nothing to read
@@ -163,6 +188,18 @@ public:
         });
     }
 
+    /// To pixels around it a finite one beyond what half floats hold is what an infinite one is: as bright as light gets.
+    void check_brightest(const std::string& what, const ChainEntry& entry, Input input) {
+        attempt(what, entry, [&] {
+            const Image color = input.color;
+            input.color = with_spots(color, infinite);
+            if (!plan(entry, input, Format::rgba32f)) return std::string();
+            const Image expected = runner_.draw(input);
+            const Image hostile = std::exchange(input.color, with_spots(color, 1e38f));
+            return unlike(runner_.draw(input), expected, hostile);
+        });
+    }
+
     /// Anything but the identity at its defaults: otherwise the cases would prove nothing.
     void check_runs(int level) {
         const ChainEntry tried = entry(level);
@@ -234,6 +271,13 @@ void try_half_precision(Trial& trial) {
         trial.check("rgba16f", trial.entry(level), input, Format::rgba16f);
         fill(input.color, largest_half);
         trial.check("rgba16f, all pixels 65504", trial.entry(level), input, Format::rgba16f);
+    }
+}
+
+void try_brightest(Trial& trial) {
+    for (int level = 0; level < trial.levels(); ++level) {
+        for (const auto& [name, entry] : trial.variants(level))
+            trial.check_brightest(name + ", a pixel of 1e38", entry, trial.input());
     }
 }
 
@@ -414,9 +458,9 @@ TEST_CASE("every effect of the catalog survives the hard cases") {
     Tally all;
     for (const EffectPtr& effect : catalog().effects()) {
         Trial trial(effect);
-        for (auto* attempt :
-             {try_defaults, try_colors, try_half_precision, try_geometry, try_attachments, try_sizes,
-              try_times, try_choices, try_scenes, try_extremes, try_random_values, try_identities}) {
+        for (auto* attempt : {try_defaults, try_colors, try_half_precision, try_brightest, try_geometry,
+                              try_attachments, try_sizes, try_times, try_choices, try_scenes, try_extremes,
+                              try_random_values, try_identities}) {
             attempt(trial);
         }
         trial.tally.print(effect->id);
