@@ -59,7 +59,7 @@ std::size_t max_bytes(const Path& file) {
 
 /// Every kind of file that is known; the first one that recognises the bytes reads them.
 constexpr std::array known_formats = {&formats::png, &formats::jpeg, &formats::exr, &formats::hdr,
-                                      &formats::pfm, &formats::stb};
+                                      &formats::pfm, &formats::pnm,  &formats::stb};
 
 const formats::Format& format_of(const ImageSource& source) {
     for (const formats::Format* format : known_formats)
