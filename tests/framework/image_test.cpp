@@ -183,6 +183,10 @@ TEST_CASE("PFM keeps every bit, in both byte orders, bottom row first") {
         read_bytes_as(directory / "l.pfm", std::string("Pf 2 1 -1\n\0\0\x80\x3f\0\0\0\x40", 18));
     CHECK(little.values == std::vector<float>{1.0f, 2.0f});
     CHECK(little.width == 2);
+    const ImageFile scaled =
+        read_image(ImageSource{"s.pfm", std::string("Pf 2 1 -4\n\0\0\x80\x3f\0\0\0\x40", 18)});
+    CHECK(scaled.image.values == std::vector<float>{1.0f, 2.0f});
+    CHECK(scaled.warnings.size() == 1);
 }
 
 TEST_CASE("PFM and HDR have no alpha, HDR no grey") {
@@ -252,9 +256,9 @@ TEST_CASE("HDR rows: order and the oldest runs") {
     CHECK(read_error(directory / "bad.hdr").find("run") != std::string::npos);
     put_bytes(directory / "zero.hdr", header + "-Y 1 +X 8\n" + std::string("\2\2\0\x08\0\0\0\0", 8));
     CHECK(read_error(directory / "zero.hdr").find("run") != std::string::npos);
-    put_bytes(directory / "xyze.hdr", "#?RADIANCE\nFORMAT=32-bit_rle_xyze\n\n-Y 1 +X 1\nabcd");
-    CHECK(read_error(directory / "xyze.hdr").find("xyze") != std::string::npos);
-    put_bytes(directory / "turned.hdr", header + "+X 1 -Y 1\nabcd");
+    put_bytes(directory / "abcd.hdr", "#?RADIANCE\nFORMAT=32-bit_abcd\n\n-Y 1 +X 1\nabcd");
+    CHECK(read_error(directory / "abcd.hdr").find("32-bit_abcd") != std::string::npos);
+    put_bytes(directory / "turned.hdr", header + "+X 1 -X 1\nabcd");
     CHECK(read_error(directory / "turned.hdr").find("resolution") != std::string::npos);
 }
 
@@ -316,7 +320,8 @@ TEST_CASE("What is no image is refused") {
     CHECK(read_error(directory / "missing.png").find("no such file") != std::string::npos);
     CHECK(read_error(directory.path()).find("directory") != std::string::npos);
     CHECK(read_error(directory / "empty.png").find("empty") != std::string::npos);
-    CHECK(read_error(directory / "words.png").find("PNG, JPEG, OpenEXR, HDR, PFM, TGA") != std::string::npos);
+    CHECK(read_error(directory / "words.png").find("PNG, JPEG, HEIC, OpenEXR, HDR, PFM, PNM, TGA")
+          != std::string::npos);
     CHECK(read_error("/dev/zero").find("larger") != std::string::npos);
     const auto file = directory / "a.png";
     CHECK(error_of(file, [&] { read_image(file, {.role = Role::data, .layer = "Z"}).image; }).find("layers")

@@ -58,7 +58,7 @@ void expect_no_layers(const ImageSource& source, const ImageRequest& request);
 /// Of a file with one picture, which serves every role; `type` is that of its channels.
 ImageDescription description_of_one(const char* kind, const Image& image, const std::string& type);
 
-extern const Format png, jpeg, exr, hdr, pfm;
+extern const Format png, jpeg, heic, exr, hdr, pfm, pnm;
 /// Those that only stb_image reads; last, as one of them (TGA) has no signature.
 extern const Format stb;
 
@@ -78,7 +78,7 @@ std::string jpeg_bytes(const Path& file, const BasicImage<std::uint8_t>& codes, 
 std::string hdr_bytes(const Image& rgb);
 
 // ---- PFM: 1 or 3 channels, either byte order, bits kept. The magnitude of the scale, which most writers leave at 1
-// and most readers ignore, is ignored.
+// and most readers ignore, is told of and ignored.
 
 /// `image`: 1 or 3 channels. Little endian.
 std::string pfm_bytes(const Image& image);

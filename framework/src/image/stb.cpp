@@ -1,8 +1,7 @@
-// What models bring and nothing else here reads: TGA, BMP, PSD and PNM, by stb_image. It believes every size and takes
+// What models bring and nothing else here reads: TGA, BMP and PSD, by stb_image. It believes every size and takes
 // the end of a file for zeros or for whatever memory held, so sizes are asked first and it is watched while it reads.
-#include <image/stored_picture.hpp>
-
 #include <image/formats.hpp>
+#include <image/stored_picture.hpp>
 
 #include <fmt/format.h>
 
@@ -14,7 +13,6 @@
 #define STBI_ONLY_TGA
 #define STBI_ONLY_BMP
 #define STBI_ONLY_PSD
-#define STBI_ONLY_PNM
 #define STBI_NO_STDIO
 #define STBI_NO_LINEAR
 #define STBI_NO_HDR
@@ -92,7 +90,6 @@ void read_codes(const Path& file, std::string_view bytes, Load load, StoredPictu
 const char* kind_of(std::string_view bytes) {
     if (bytes.starts_with("BM")) return "BMP";
     if (bytes.starts_with("8BPS")) return "PSD";
-    if (bytes.starts_with("P5") || bytes.starts_with("P6")) return "PNM";
     return "TGA";
 }
 
@@ -131,6 +128,6 @@ ImageDescription describe(const ImageSource& source) {
 
 } // namespace
 
-const Format stb = {"TGA, BMP, PSD, PNM", recognises, read, describe};
+const Format stb = {"TGA, BMP, PSD", recognises, read, describe};
 
 } // namespace postfx::formats
