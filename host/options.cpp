@@ -121,15 +121,17 @@ PictureFile OutputOptions::file() const {
 }
 
 Size parse_size(const std::string& text) {
+    constexpr int largest_side = 32768; // as of image files; a device that has less says so itself
     Size size;
     const std::size_t x = text.find('x');
     const auto read = [&](std::size_t from, std::size_t to, int& number) {
         const auto result = std::from_chars(text.data() + from, text.data() + to, number);
-        return result.ec == std::errc() && result.ptr == text.data() + to && number >= 1 && number <= 16384;
+        return result.ec == std::errc() && result.ptr == text.data() + to && number >= 1
+               && number <= largest_side;
     };
     if (x == std::string::npos || !read(0, x, size.width) || !read(x + 1, text.size(), size.height)) {
-        throw Error(
-            fmt::format("size \"{}\" is not WIDTHxHEIGHT with sides of 1 to 16384, such as 1280x720", text));
+        throw Error(fmt::format("size \"{}\" is not WIDTHxHEIGHT with sides of 1 to {}, such as 1280x720",
+                                text, largest_side));
     }
     return size;
 }

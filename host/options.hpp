@@ -87,7 +87,7 @@ private:
     double quality_ = 0.92;
 };
 
-/// "1280x720". Throws Error for anything else, or a side of 0 or above 16384.
+/// "1280x720". Throws Error for anything else, or a side of 0 or above 32768.
 struct Size {
     int width = 0, height = 0;
 };

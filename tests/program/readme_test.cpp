@@ -23,7 +23,8 @@ std::vector<std::string> commands(const std::string& text, const std::vector<std
     for (std::string line; std::getline(lines, line);) {
         const std::size_t start = line.find_first_not_of(' ');
         if (start == std::string::npos || start == 0) continue;
-        const std::string command = line.substr(start, line.find("  #") - start);
+        std::string command = line.substr(start, line.find("  #") - start);
+        command.erase(command.find_last_not_of(' ') + 1);
         const std::string program = command.substr(0, command.find(' '));
         if (std::find(programs.begin(), programs.end(), program) != programs.end()) found.push_back(command);
     }

@@ -15,7 +15,7 @@
 namespace postfx {
 namespace {
 
-constexpr int largest_side = 16384;
+constexpr int largest_side = 32768; // no device has more; what the one at hand has, the executor asks
 constexpr std::array moments = {"configuration", "scene"};
 constexpr std::array identity_kinds = {"exact", "code", "visible"};
 
@@ -230,8 +230,8 @@ private:
         pass.height = static_cast<int>(declared.height);
         if (declared.width < 1 || declared.height < 1 || declared.width > largest_side
             || declared.height > largest_side) {
-            throw Wrong{
-                fmt::format("pass {} wants {}x{} pixels", pass.name, declared.width, declared.height)};
+            throw Wrong{fmt::format("pass {} wants {}x{} pixels, a side has 1 to {}", pass.name,
+                                    declared.width, declared.height, largest_side)};
         }
         // A compose function's pass has the chain's colour besides.
         const std::size_t most = pass.compose ? most_pass_inputs - 1 : most_pass_inputs;
