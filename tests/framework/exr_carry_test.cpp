@@ -203,6 +203,27 @@ TEST_CASE("Deep parts are carried as they are packed") {
     CHECK(before.substr(before.size() - deep_bytes) == after.substr(after.size() - deep_bytes));
 }
 
+TEST_CASE("A part whose pixels were never written is left out, and told") {
+    const TemporaryDirectory directory;
+    const auto from = directory / "a.exr", to = directory / "b.exr";
+    std::vector<Imf::Header> headers(2, header_of(box(0, 0, 2, 2), box(0, 0, 2, 2)));
+    headers[0].setName("rgba");
+    headers[1].setName("depth");
+    const Planes color(headers[0], {"R", "G", "B"}), depth(headers[1], {"Z"});
+    for (Imf::Header& header : headers)
+        header.setType(Imf::SCANLINEIMAGE);
+    {
+        Imf::MultiPartOutputFile output(from.c_str(), headers.data(), 2);
+        Imf::OutputPart part(output, 0);
+        part.setFrameBuffer(color.frame);
+        part.writePixels(2);
+    }
+    const auto remarks = rewrite(from, to, nothing);
+    REQUIRE(remarks.size() == 1);
+    CHECK(remarks[0] == "part 2 is truncated and was left out");
+    CHECK(same_values(read_image(from).image, read_image(to).image));
+}
+
 TEST_CASE("The file's colour space stays, and what is written is right in it") {
     const TemporaryDirectory directory;
     const auto from = directory / "a.exr", to = directory / "b.exr";
