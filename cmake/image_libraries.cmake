@@ -16,6 +16,9 @@ postfx_link_decoder(png png.h libpng-dev)
 postfx_link_decoder(z zlib.h zlib1g-dev)
 postfx_link_decoder(jpeg jpeglib.h libjpeg62-turbo-dev)
 postfx_link_decoder(lcms2 lcms2.h liblcms2-dev)
+postfx_link_decoder(tiff tiffio.h libtiff-dev)
+postfx_link_decoder(webp webp/decode.h libwebp-dev)
+postfx_link_decoder(webpdemux webp/demux.h libwebp-dev)
 
 # Optional: its decoder of HEVC is large, and few need it.
 find_library(POSTFX_LIBRARY_heif heif)

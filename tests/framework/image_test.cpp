@@ -320,7 +320,7 @@ TEST_CASE("What is no image is refused") {
     CHECK(read_error(directory / "missing.png").find("no such file") != std::string::npos);
     CHECK(read_error(directory.path()).find("directory") != std::string::npos);
     CHECK(read_error(directory / "empty.png").find("empty") != std::string::npos);
-    CHECK(read_error(directory / "words.png").find("PNG, JPEG, HEIC, OpenEXR, HDR, PFM, PNM, TGA")
+    CHECK(read_error(directory / "words.png").find("PNG, JPEG, HEIC, TIFF, WebP, OpenEXR, HDR, PFM, PNM, TGA")
           != std::string::npos);
     CHECK(read_error("/dev/zero").find("larger") != std::string::npos);
     const auto file = directory / "a.png";

@@ -174,7 +174,7 @@ YamlMistake colon_missing(std::size_t offset, string_view word) {
     return {offset, fmt::format("a colon is missing behind \"{}\"", word)};
 }
 
-/// `bloom {intensity: 1}`: a word with a bracket behind it, which is all one word to a parser.
+/// `glow {intensity: 1}`: a word with a bracket behind it, which is all one word to a parser.
 std::optional<YamlMistake> find_word_before_bracket(const Line& line) {
     const string_view content = line.content();
     for (std::size_t bracket = content.find_first_of("{["); bracket != string_view::npos;

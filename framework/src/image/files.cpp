@@ -65,8 +65,9 @@ std::size_t max_bytes(const Path& file) {
 }
 
 /// Every kind of file that is known; the first one that recognises the bytes reads them.
-constexpr std::array known_formats = {&formats::png, &formats::jpeg, &formats::heic, &formats::exr,
-                                      &formats::hdr, &formats::pfm,  &formats::pnm,  &formats::stb};
+constexpr std::array known_formats = {&formats::png,  &formats::jpeg, &formats::heic, &formats::tiff,
+                                      &formats::webp, &formats::exr,  &formats::hdr,  &formats::pfm,
+                                      &formats::pnm,  &formats::stb};
 
 const formats::Format& format_of(const ImageSource& source) {
     for (const formats::Format* format : known_formats)

@@ -58,7 +58,7 @@ void expect_no_layers(const ImageSource& source, const ImageRequest& request);
 /// Of a file with one picture, which serves every role; `type` is that of its channels.
 ImageDescription description_of_one(const char* kind, const Image& image, const std::string& type);
 
-extern const Format png, jpeg, heic, exr, hdr, pfm, pnm;
+extern const Format png, jpeg, heic, tiff, webp, exr, hdr, pfm, pnm;
 /// Those that only stb_image reads; last, as one of them (TGA) has no signature.
 extern const Format stb;
 
