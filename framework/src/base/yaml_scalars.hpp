@@ -24,7 +24,7 @@ std::string number_hint(std::string_view text);
 /// The same when a list or map has other items than expected: whole numbers that stand around commas without a blank.
 std::string comma_hint(std::string_view before, std::string_view after);
 
-/// `; a colon is missing behind "bloom"`, when `text` begins with one of the `keys`, and a value rather than a colon and
+/// `; a colon is missing behind "glow"`, when `text` begins with one of the `keys`, and a value rather than a colon and
 /// a blank follows it; the same of a list's dash; else "".
 std::string colon_hint(std::string_view text, const std::vector<std::string>& keys);
 
