@@ -187,7 +187,7 @@ std::optional<YamlMistake> find_word_before_bracket(const Line& line) {
     return std::nullopt;
 }
 
-/// `bloom` on a line of its own, with its settings indented below.
+/// `glow` on a line of its own, with its settings indented below.
 std::optional<YamlMistake> find_word_above(string_view text, const Line& line) {
     const std::optional<Line> above = line_before(text, line);
     if (!above || !is_word(above->content())) return std::nullopt;
@@ -196,7 +196,7 @@ std::optional<YamlMistake> find_word_above(string_view text, const Line& line) {
     return colon_missing(above->offset_of(above->content()), above->content());
 }
 
-/// `bloom: intensity: 1`
+/// `glow: intensity: 1`
 std::optional<YamlMistake> find_second_key(const Line& line, std::size_t refused) {
     const std::size_t first = line.text.find(": ");
     const std::size_t second = line.text.find(": ", first == string_view::npos ? first : first + 2);
