@@ -220,7 +220,9 @@ ImageFile read_heic(const ImageSource& source, const ImageRequest& request) {
     expect_no_layers(source, request);
     const Opened file = opened(source);
     if (request.role == Role::depth) return read_depth(source.name, file.primary.get());
-    return as_asked(stored_color(source.name, file.primary.get()), request);
+    ImageFile color = as_asked(stored_color(source.name, file.primary.get()), request);
+    color.has_depth_map = heif_image_handle_has_depth_image(file.primary.get()) != 0;
+    return color;
 }
 
 ImageDescription describe_heic(const ImageSource& source) {
