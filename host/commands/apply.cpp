@@ -4,6 +4,8 @@
 #include "depth_input.hpp"
 #include "gl_session.hpp"
 #include "layer_input.hpp"
+#include "normal_input.hpp"
+#include "number_checks.hpp"
 #include "options.hpp"
 #include "picture.hpp"
 #include "report_output.hpp"
@@ -51,13 +53,14 @@ public:
         app.add_option("--working", working_, "Format of working targets")
             ->check(CLI::IsMember({"rgba16f", "rgba32f"}))
             ->capture_default_str();
-        app.add_option("--time", time_, "Seconds")->capture_default_str();
+        app.add_option("--time", time_, "Seconds")->check(finite())->capture_default_str();
         app.add_option("--frame", frame_, "Frame number: noise depends on it")->capture_default_str();
         app.add_option("--seed", seed_, "Seed of all noise")->capture_default_str();
         app.add_flag("--no-fuse", no_fuse_, "Let every effect write its own target");
         app.add_flag("--strict", strict_, "Refuse what would be brought into shape with a warning");
         layer_options_.declare(app);
         depth_options_.declare(app);
+        normal_options_.declare(app);
         chain_options_.declare(app);
         catalog_options_.declare(app);
         report_options_.declare(app);
@@ -141,19 +144,18 @@ private:
     std::map<std::string, Image> attachments(const Facts& facts, const ColorInput& color) const {
         std::map<std::string, Image> images;
         if (!depth_.empty()) {
-            const Image depth = read(Role::depth, depth_, color).image;
-            check_size(depth, depth_, facts);
-            images["depth"] = depth_options_.samples(depth, facts.camera);
+            DepthSamples depth =
+                depth_options_.read(depth_, read(Role::depth, depth_, color), color.file.image, facts.camera);
+            tell_or_refuse(depth_, depth.warnings, strict_, report_options_.quiet());
+            tell_lines(depth_, depth.remarks, report_options_.quiet());
+            images["depth"] = std::move(depth.samples);
         }
         if (!normal_.empty()) {
             const ImageFile file = read(Role::normal, normal_, color);
-            Image normal = widened(file.image);
-            check_size(normal, normal_, facts);
-            if (file.coding.numbers == Coding::Numbers::codes) {
-                for (float& value : normal.values)
-                    value = value * 2 - 1;
-            }
-            images["normal"] = std::move(normal);
+            check_size(file.image, normal_, facts);
+            const ViewNormals normals = normal_options_.read(normal_, file, color.file, facts.camera);
+            tell_or_refuse(normal_, normals.warnings, strict_, report_options_.quiet());
+            images["normal"] = widened(normals.image);
         }
         for (const auto& [role, file] :
              {std::pair{Role::emission, emission_}, std::pair{Role::ambient, ambient_}}) {
@@ -178,6 +180,7 @@ private:
     bool no_fuse_ = false, strict_ = false;
     LayerOptions layer_options_;
     DepthOptions depth_options_;
+    NormalOptions normal_options_;
     ChainOptions chain_options_{""};
     CatalogOptions catalog_options_;
     ReportOptions report_options_;
