@@ -11,7 +11,6 @@
 #include <algorithm>
 #include <cctype>
 #include <charconv>
-#include <cmath>
 #include <cstdio>
 
 #include <unistd.h>
@@ -97,14 +96,6 @@ std::string kind_of(const PictureFile& file) {
                    [](unsigned char letter) { return static_cast<char>(std::tolower(letter)); });
     return kind == ".jpeg" ? "jpg" : kind.substr(std::min<std::size_t>(1, kind.size()));
 }
-
-const CLI::Validator finite_number(
-    [](const std::string& text) {
-        double number = 0;
-        const bool good = CLI::detail::lexical_cast(text, number) && std::isfinite(number);
-        return good ? std::string() : fmt::format("{} is not a finite number", text);
-    },
-    "");
 
 PictureFile OutputOptions::file() const {
     const bool standard_output = path_ == "-" || path_ == "/dev/stdout" || path_ == "/dev/fd/1";

@@ -70,9 +70,6 @@ struct PictureFile {
 /// "png", "exr", ...: the kind that is asked for, else the path's ending in small letters; jpeg is jpg.
 std::string kind_of(const PictureFile& file);
 
-/// A number that is neither infinite nor NaN.
-extern const CLI::Validator finite_number;
-
 /// -o, --format, --bits and --quality.
 class OutputOptions {
 public:

@@ -14,15 +14,6 @@ std::optional<double> vertical_fov_of(const ShotData& shot, int width, int heigh
     return 2 * std::atan(half_height_mm / *shot.focal_length_35mm) * 180 / std::numbers::pi;
 }
 
-Image metres_of(Image samples, const DepthScale& scale) {
-    for (float& sample : samples.values) {
-        const double said = std::lerp(scale.at_zero, scale.at_one, static_cast<double>(sample));
-        const double metres = scale.kind == DepthScale::Kind::metres ? said : said > 0 ? 1 / said : 0;
-        sample = static_cast<float>(metres);
-    }
-    return samples;
-}
-
 std::optional<double> distance_at(const Image& depth, const Camera& camera, PicturePoint point) {
     const auto pixel_of = [](double share, int pixels) {
         return std::clamp(static_cast<int>(std::floor(share * pixels)), 0, pixels - 1);

@@ -20,9 +20,6 @@ struct PicturePoint {
 /// picture's shape. Nothing when the file does not tell it.
 std::optional<double> vertical_fov_of(const ShotData& shot, int width, int height);
 
-/// Metres along the view axis for samples whose meaning their own file tells; 0 where it says "infinitely far".
-Image metres_of(Image samples, const DepthScale& scale);
-
 /// Metres along the view axis to what is seen at `point`: the median of the surfaces within a hundredth of the
 /// picture's height around it, so that one wrong sample of a phone's depth map does not decide. `depth`: raw samples
 /// of `camera`, one channel. Nothing when no surface is seen there.

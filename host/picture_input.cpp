@@ -65,6 +65,7 @@ void PictureOptions::declare(CLI::App& app) {
                  "Refuse files that have to be brought into shape, instead of telling so");
     layer_options_.declare(app);
     depth_options_.declare(app);
+    normal_options_.declare(app);
 }
 
 /// One picture being read. A file that is named in several roles is read once: a pipe gives its bytes only once.
@@ -96,21 +97,21 @@ private:
         const bool own = options_.depth_.empty();
         if (own && !input_.color.has_depth_map) return;
         const std::string& name = own ? options_.color_ : options_.depth_;
-        ImageFile depth = measurement(Role::depth, name);
-        const DepthOptions& meaning = options_.depth_options_;
-        if (depth.depth_scale && !meaning.is_told())
-            depth.image = metres_of(std::move(depth.image), *depth.depth_scale);
-        input_.attachments["depth"] = meaning.samples(depth.image, input_.camera);
+        DepthSamples depth = options_.depth_options_.read(name, measurement(Role::depth, name),
+                                                          input_.color.image, input_.camera);
+        tell_or_refuse(name, depth.warnings, options_.strict_, false);
+        tell_lines(name, depth.remarks, false);
+        input_.attachments["depth"] = std::move(depth.samples);
     }
 
     void read_normal() {
         if (options_.normal_.empty()) return;
-        ImageFile normal = measurement(Role::normal, options_.normal_);
-        if (normal.coding.numbers == Coding::Numbers::codes) {
-            for (float& value : normal.image.values)
-                value = value * 2 - 1;
-        }
-        input_.attachments["normal"] = widened(normal.image);
+        const std::string& name = options_.normal_;
+        const ImageFile file = measurement(Role::normal, name);
+        check_size(file.image, name);
+        const ViewNormals normals = options_.normal_options_.read(name, file, input_.color, input_.camera);
+        tell_or_refuse(name, normals.warnings, options_.strict_, false);
+        input_.attachments["normal"] = widened(normals.image);
     }
 
     void read_light(Role role, const std::string& name) {
@@ -132,7 +133,6 @@ private:
                                              : oriented(map.image, orientation);
             tell(name, {fmt::format("is turned along with the picture (EXIF orientation {})", orientation)});
         }
-        check_size(map.image, name);
         return map;
     }
 

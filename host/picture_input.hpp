@@ -3,6 +3,7 @@
 
 #include "depth_input.hpp"
 #include "layer_input.hpp"
+#include "normal_input.hpp"
 #include "photo_camera.hpp"
 
 #include <image/files.hpp>
@@ -47,6 +48,7 @@ private:
     bool strict_ = false;
     LayerOptions layer_options_;
     DepthOptions depth_options_;
+    NormalOptions normal_options_;
 };
 
 } // namespace postfx::host

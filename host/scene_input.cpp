@@ -1,5 +1,6 @@
 #include "scene_input.hpp"
 
+#include "number_checks.hpp"
 #include "resources.hpp"
 
 namespace postfx::host {
@@ -9,7 +10,9 @@ void SceneOptions::declare(CLI::App& app) {
                                  "A name from configs/scenes/, a scene file, or a model (glTF, OBJ, ...)");
     if (default_scene_.empty()) scene->required();
     app.add_option("--size", size_, "Of the picture, pixels")->type_name("WxH")->capture_default_str();
-    app.add_option("--time", time_, "Seconds after the scene's start")->capture_default_str();
+    app.add_option("--time", time_, "Seconds after the scene's start")
+        ->check(finite())
+        ->capture_default_str();
     app.add_flag("--no-fuse", no_fuse_, "Let every effect write its own target");
 }
 

@@ -2,6 +2,7 @@
 #include "budget.hpp"
 #include "command.hpp"
 #include "gl_session.hpp"
+#include "number_checks.hpp"
 #include "options.hpp"
 #include "picture.hpp"
 #include "picture_input.hpp"
@@ -44,7 +45,7 @@ public:
         app.add_option("--working", working_, "Format of working targets")
             ->check(CLI::IsMember({"rgba16f", "rgba32f"}))
             ->capture_default_str();
-        app.add_option("--time", time_, "Seconds")->check(finite_number)->capture_default_str();
+        app.add_option("--time", time_, "Seconds")->check(finite())->capture_default_str();
         app.add_option("--frame", frame_, "Frame number: noise depends on it")->capture_default_str();
         app.add_option("--seed", seed_, "Seed of all noise")->capture_default_str();
         app.add_flag("--no-fuse", no_fuse_, "Let every effect write its own target");
