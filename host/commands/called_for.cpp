@@ -186,7 +186,7 @@ private:
         }
         std::vector<Scene> scenes;
         for (const std::string& name : names)
-            scenes.push_back(open_scene(name, directory));
+            scenes.push_back(open_known_scene(name));
         return scenes;
     }
 

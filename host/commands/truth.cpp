@@ -6,7 +6,7 @@
 #include "number_checks.hpp"
 #include "options.hpp"
 #include "picture.hpp"
-#include "resources.hpp"
+#include "scene_input.hpp"
 #include "truth_store.hpp"
 
 #include <image/files.hpp>
@@ -105,7 +105,7 @@ private:
         Chain chain;
         parse_chain_entry(effect_text(), "EFFECT", catalog, chain);
         const Size size = parse_size(size_);
-        return {.scene = open_scene(scene_, data_directory() / "configs/scenes"),
+        return {.scene = open_known_scene(scene_),
                 .time = time_,
                 .width = size.width,
                 .height = size.height,

@@ -1,6 +1,6 @@
 #include "file_kind.hpp"
 
-#include "assets.hpp"
+#include "model.hpp"
 
 #include <algorithm>
 #include <array>

@@ -26,6 +26,6 @@ Projection make_projection(const Camera& camera, double aspect, glm::dvec2 shift
 Camera drawable(const Camera& camera);
 
 /// Is the box wholly outside of one side of the view?
-bool outside(const glm::mat4& world_to_clip, const Bounds& bounds);
+bool outside(const glm::dmat4& world_to_clip, const Bounds& bounds);
 
 } // namespace postfx::host

@@ -64,6 +64,7 @@ Material read_material(const std::string& name, const YamlValue& value) {
     material.normal_texture = read_picture(map, "normal_texture", false);
     material.emission_texture = read_picture(map, "emission_texture", true);
     material.metal_roughness_texture = read_picture(map, "metal_roughness_texture", false);
+    material.metal_rough = bool(material.metal_roughness_texture);
     return material;
 }
 

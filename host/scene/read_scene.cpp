@@ -112,6 +112,8 @@ Document read_document(const std::string& text, const std::filesystem::path& ori
 /// Turns a document into a scene.
 class SceneReader {
 public:
+    explicit SceneReader(const ModelSource& read_model) { library_.read_model = read_model; }
+
     Scene read(const Document& document, const std::filesystem::path& origin) {
         scene_.file = origin;
         scene_.name = origin.stem().string();
@@ -174,6 +176,7 @@ private:
             }
         }
         scene_.nodes.push_back(std::move(node));
+        if (const auto mesh = map.find("mesh")) place_model(*mesh, map.find("material"), index, scene_, library_);
         if (const auto value_of_light = map.find("light")) {
             Light light = read_light(*value_of_light);
             light.node = index;
@@ -253,12 +256,12 @@ private:
 
 } // namespace
 
-Scene parse_scene(const std::string& yaml, const std::filesystem::path& origin) {
-    return SceneReader().read(read_document(yaml, origin, {}), origin);
+Scene parse_scene(const std::string& yaml, const std::filesystem::path& origin, const ModelSource& read_model) {
+    return SceneReader(read_model).read(read_document(yaml, origin, {}), origin);
 }
 
-Scene read_scene(const std::filesystem::path& file) {
-    return parse_scene(read_text(file), file);
+Scene read_scene(const std::filesystem::path& file, const ModelSource& read_model) {
+    return parse_scene(read_text(file), file, read_model);
 }
 
 std::string read_scene_description(const std::filesystem::path& file) {

@@ -3,7 +3,7 @@
 #include <catch2/catch.hpp>
 
 #include <postfx/error.hpp>
-#include <scene/assets.hpp>
+#include <scene/model.hpp>
 #include <scene/generators.hpp>
 #include <scene/scene.hpp>
 #include <temporary_directory.hpp>
@@ -493,18 +493,22 @@ TEST_CASE("FlightHelmet opens with its textures") {
     const auto file = test_data("FlightHelmet/FlightHelmet.gltf");
     if (file.empty()) return;
     const Model model = load_model(file);
-    CHECK(model.parts.size() == 6);
+    CHECK(model.part_count() == 6);
+    CHECK(model.losses.empty());
     std::size_t blended = 0;
-    for (const ModelPart& part : model.parts) {
-        check_sane(*part.mesh);
-        const Material& material = model.materials[part.material];
-        INFO(material.name);
-        REQUIRE(material.diffuse_texture);
-        CHECK(material.diffuse_texture->srgb);
-        REQUIRE(material.normal_texture);
-        CHECK_FALSE(material.normal_texture->srgb);
-        CHECK(material.metal_roughness_texture);
-        blended += material.blended;
+    for (const Node& node : model.nodes) {
+        for (const Part& part : node.parts) {
+            check_sane(*part.mesh);
+            const Material& material = model.materials[part.material];
+            INFO(material.name);
+            REQUIRE(material.diffuse_texture);
+            CHECK(material.diffuse_texture->srgb);
+            REQUIRE(material.normal_texture);
+            CHECK_FALSE(material.normal_texture->srgb);
+            CHECK(material.metal_roughness_texture);
+            CHECK(material.occlusion_texture);
+            blended += material.blended;
+        }
     }
     CHECK(blended == 1); // the lenses
 }

@@ -35,11 +35,11 @@ bool is_standard_input(const fs::path& file) {
     return file == "-";
 }
 
-/// The name of a descriptor of this process, which is in no folder that the user thinks of.
+/// The name of a process's descriptor, which is in no folder that the user thinks of: /dev/fd/3, /proc/self/fd/3.
 bool names_descriptor(const fs::path& file) {
     const std::string folder = file.parent_path().string();
     return is_standard_input(file) || file == "/dev/stdin" || folder == "/dev/fd"
-           || folder == "/proc/self/fd";
+           || (folder.starts_with("/proc/") && folder.ends_with("/fd"));
 }
 
 /// `; did you mean "default.yaml"?` for a neighbour of the missing file.
