@@ -1,6 +1,9 @@
 #include "gltf_document.hpp"
 
 #include "asset_files.hpp"
+#include "file_kind.hpp"
+
+#include <base/read_file.hpp>
 
 #include <postfx/error.hpp>
 
@@ -229,14 +232,13 @@ std::optional<std::vector<std::uint8_t>> GltfDocument::image_bytes(std::size_t i
 }
 
 bool is_gltf(const std::filesystem::path& file) {
-    std::string ending = file.extension().string();
-    std::transform(ending.begin(), ending.end(), ending.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
     std::ifstream stream(file, std::ios::binary);
     std::array<char, 8> head{};
     stream.read(head.data(), head.size());
     if (std::string_view(head.data(), 4) == glb_magic) return head[4] != 1;
-    if (ending != ".gltf" && ending != ".glb") return false;
+    std::error_code unknown;
+    if (model_ending(read_start(file, recognized_bytes, "a model"), std::filesystem::file_size(file, unknown)) != ".gltf")
+        return false;
     // Version 1 has objects where version 2 has lists.
     stream.clear();
     stream.seekg(0);
