@@ -240,7 +240,7 @@ DepthSamples DepthOptions::read(const std::string& name, const ImageFile& depth,
     if (width == picture.width && height == picture.height) return result;
 
     const std::string sizes =
-        fmt::format("is {}x{}, the picture {}x{}: ", width, height, picture.width, picture.height);
+        fmt::format("the depth is {}x{}, the picture {}x{}: ", width, height, picture.width, picture.height);
     if (width > picture.width || height > picture.height) {
         result.samples = nearest_values(result.samples, picture.width, picture.height);
         result.warnings.push_back(sizes + "each pixel takes the nearest sample");

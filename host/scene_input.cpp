@@ -45,8 +45,9 @@ void SceneOptions::declare(CLI::App& app) {
     app.add_flag("--no-fuse", no_fuse_, "Let every effect write its own target");
 }
 
-Scene open_known_scene(const std::string& scene, bool strict) {
+Scene open_known_scene(const std::string& scene, bool strict, const std::string& camera) {
     Scene opened = open_scene(scene, data_directory() / "configs/scenes", read_model_in_child);
+    if (!camera.empty()) take_camera(opened, camera);
     if (strict && !opened.losses.empty()) {
         throw Error(fmt::format("{} (--strict refuses what is left out)", fmt::join(opened.losses, "; ")));
     }
@@ -56,9 +57,7 @@ Scene open_known_scene(const std::string& scene, bool strict) {
 }
 
 Scene SceneOptions::open() const {
-    Scene scene = open_known_scene(default_scene_.empty() ? scene_ : default_scene_, strict_);
-    if (!camera_.empty()) take_camera(scene, camera_);
-    return scene;
+    return open_known_scene(default_scene_.empty() ? scene_ : default_scene_, strict_, camera_);
 }
 
 Facts SceneOptions::facts(const Scene& scene, ViewBounds& bounds, Output output) const {
