@@ -1,6 +1,7 @@
 // What is skipped because nothing calls for it makes no difference: for every effect, scene and moment, against the
 // chain in which everything runs. An effect gets these checks by existing; none is named here. POSTFX_LONG=1 tries
 // slow levels on every input.
+#include "refusals.hpp"
 #include "scene_inputs.hpp"
 
 #include <plan/record.hpp>
@@ -67,7 +68,9 @@ using Tally = std::map<std::string, int>;
 
 class Court {
 public:
-    /// Nothing when an effect refuses its values.
+    explicit Court(const Catalog& effects = catalog()) : pinned_(effects) {}
+
+    /// Nothing when an effect refuses its values, as it declares that it does; any other error is thrown.
     std::optional<Outcome> run(Chain chain, const Input& input, Skip skip, bool fuse = false) {
         chain.skip = skip;
         Facts facts = facts_of(input);
@@ -76,7 +79,9 @@ public:
         std::optional<Plan> plan;
         try {
             plan = planner_.plan(chain, facts);
-        } catch (const Error&) {
+        } catch (const Refusal& refusal) {
+            if (!pinned_.expects(refusal)) throw;
+            ++refused;
             return std::nullopt;
         }
         runner_.prepare(std::move(*plan));
@@ -84,12 +89,16 @@ public:
         return Outcome{std::move(picture), runner_.report()};
     }
 
-    /// What was wrong with skipping, or "".
+    /// What was wrong, with skipping or at all, or "".
     std::string check(const Chain& chain, const Input& input) {
         std::string problem;
         for (const bool known : {true, false}) {
             knows_bounds = known;
-            problem += check_once(chain, input);
+            try {
+                problem += check_once(chain, input);
+            } catch (const Error& error) {
+                problem += fmt::format("failed: {}\n", error.what());
+            }
         }
         return problem;
     }
@@ -130,7 +139,7 @@ public:
     }
 
     void print(const std::string& what) const {
-        fmt::print("{}: {} cases", what, cases);
+        fmt::print("{}: {} cases, {} plans refused as pinned", what, cases, refused);
         for (const auto& [moment, times] : tally)
             fmt::print(", {} x {}", times, moment);
         fmt::print("\n");
@@ -138,7 +147,7 @@ public:
 
     /// Does the host know the scene's bounds? If not, more is left to the frame.
     bool knows_bounds = true;
-    int cases = 0;
+    int cases = 0, refused = 0;
     Tally tally;
 
 private:
@@ -178,6 +187,7 @@ private:
 
     Planner planner_;
     Runner runner_;
+    PinnedRefusals pinned_;
 };
 
 /// Inputs of which each lacks something that an effect could be called for by.
@@ -436,6 +446,23 @@ TEST_CASE("effects that lie about being called for are found out") {
     Court court;
     for (const EffectPtr& liar : liars.effects()) {
         CAPTURE(liar->id);
-        CHECK(!court.check(alone(liars, liar->id), inputs().front().thing).empty());
+        CHECK_THAT(court.check(alone(liars, liar->id), inputs().front().thing),
+                   Catch::Contains("skips change"));
     }
+}
+
+TEST_CASE("only a pinned refusal is left out of the comparison") {
+    Catalog fixtures;
+    fixtures.load(std::string(POSTFX_FIXTURES) + "/postfx_fixture_refusing.so");
+    Court court(fixtures);
+    const auto problem = [&](const std::string& id) {
+        Chain chain = alone(fixtures, id);
+        chain.entries.front().set("amount", 0.75);
+        return court.check(chain, Input{.color = inputs().front().thing.color});
+    };
+    CHECK(problem("pinned").empty());
+    CHECK(court.cases == 0);
+    CHECK(court.refused == 2); // with the scene's bounds and without
+    CHECK_THAT(problem("unpinned"), Catch::Contains("nobody was told of this"));
+    CHECK_THAT(problem("mistaken"), Catch::Contains("an image that does not exist"));
 }

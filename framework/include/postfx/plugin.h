@@ -199,6 +199,8 @@ typedef struct postfx_builder {
     void (*decide)(void* context, const postfx_decision* decision);
     /* Size of an image of this plan, pixels. */
     void (*size)(void* context, postfx_image image, uint32_t* width, uint32_t* height);
+    /* The effect found a mistake of its own, which no other values mend; the chain is refused with this message. */
+    void (*fail)(void* context, const char* message);
 } postfx_builder;
 
 typedef struct postfx_effect {
@@ -216,7 +218,7 @@ typedef struct postfx_effect {
     uint32_t default_level; /* index into levels */
     const postfx_level* levels;
     uint32_t level_count, level_stride;
-    /* Pure: same request, same calls. Returns 0, or non-zero after refuse(). */
+    /* Pure: same request, same calls. Returns 0, or non-zero after refuse() or fail(). */
     int32_t (*plan)(const postfx_request* request, const postfx_builder* builder);
     /* Pure. Null: not known; then no effect in front of this one is skipped for changing less than a code. */
     void (*gain)(const postfx_request* request, postfx_gain* gain);
