@@ -3,13 +3,16 @@
 #   postfx_add_effect(), postfx_warnings()
 #   postfx::plugin_headers   what an effect needs: headers only
 #   postfx::postfx           the embedding library
-#   postfx::testing          the harness of effects' tests
-#   postfx::gl_test_main     its main()
+#   postfx::testing          the harness of effects' tests, and
+#   postfx::gl_test_main     its main(), where tests are built (POSTFX_TESTS)
 include(CMakePackageConfigHelpers)
 
 set(config_dir lib/cmake/postfx)
 set(libraries postfx postfx_glad postfx_base postfx_image postfx_gl postfx_plugin postfx_chain postfx_plan
-              postfx_budget postfx_execute postfx_testing postfx_gl_test_main)
+              postfx_budget postfx_execute)
+if(POSTFX_TESTS)
+  list(APPEND libraries postfx_testing postfx_gl_test_main)
+endif()
 
 # Inside the tree targets see its folders; to others they show the public headers.
 function(postfx_set_installed_headers target directory)
@@ -29,7 +32,10 @@ foreach(target ${libraries} postfx_plugin_headers)
     postfx_set_installed_headers(${target} include)
   endif()
 endforeach()
-postfx_set_installed_headers(postfx_testing "include;include/postfx_testing")
+if(POSTFX_TESTS)
+  postfx_set_installed_headers(postfx_testing "include;include/postfx_testing")
+  install(DIRECTORY tests/harness/ DESTINATION include/postfx_testing FILES_MATCHING PATTERN "*.hpp")
+endif()
 
 # Two exports, because an effect can be built on a machine that has none of the library's dependencies.
 install(TARGETS postfx_plugin_headers EXPORT postfx-plugin-targets)
@@ -39,6 +45,11 @@ foreach(export postfx-plugin-targets postfx-library-targets)
   install(EXPORT ${export} NAMESPACE postfx:: DESTINATION ${config_dir})
 endforeach()
 
+set(POSTFX_LIBRARY_DEPENDENCIES fmt OpenEXR yaml-cpp nlohmann_json OpenGL)
+if(POSTFX_TESTS)
+  list(APPEND POSTFX_LIBRARY_DEPENDENCIES Catch2)
+endif()
+string(REPLACE ";" " " POSTFX_LIBRARY_DEPENDENCIES "${POSTFX_LIBRARY_DEPENDENCIES}")
 # The same file for both; only the place of our CMake functions differs.
 set(POSTFX_FUNCTIONS_DIR ${PROJECT_SOURCE_DIR}/cmake)
 configure_file(cmake/postfx-config.cmake.in ${PROJECT_BINARY_DIR}/postfx-config.cmake @ONLY)
@@ -49,7 +60,6 @@ install(FILES ${PROJECT_BINARY_DIR}/installed/postfx-config.cmake ${PROJECT_BINA
               cmake/postfx_add_effect.cmake cmake/plugin_exports.map cmake/postfx_warnings.cmake cmake/embed_glsl.cmake
         DESTINATION ${config_dir})
 install(DIRECTORY framework/include/postfx DESTINATION include)
-install(DIRECTORY tests/harness/ DESTINATION include/postfx_testing FILES_MATCHING PATTERN "*.hpp")
 
 # The program finds its effects and data from its own place (catalog.hpp, host/resources.hpp).
 file(STRINGS framework/include/postfx/plugin.h abi_major REGEX "^#define POSTFX_ABI_MAJOR ")

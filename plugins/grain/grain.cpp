@@ -32,7 +32,8 @@ constexpr postfx_level levels[] = {
                   "sine noise by how far a pixel is out of focus, the same in all light; wears out in time"),
     postfx::level("low", "one number per pixel: right in strength, but grains are pixels"),
     postfx::level("medium", "grains of the right size from 3 numbers per channel"),
-    postfx::level("high", "discs of two sizes on a lattice, seen through pixels: up to 14 numbers per channel"),
+    postfx::level("high",
+                  "discs of two sizes on a lattice, seen through pixels: up to 14 numbers per channel"),
     postfx::level("reference", "32 layers of discs at random places (Boolean model); slow"),
 };
 

@@ -257,7 +257,8 @@ TEST_CASE("a budget on the command line") {
         return error_of([&] { postfx::parse_budget(text, "--budget"); });
     };
     CHECK(message("6") == "--budget: expected ms=MILLISECONDS or error=SHARE, found \"6\"");
-    CHECK(message("seconds=1") == "--budget:1:1: \"budget\" has no key \"seconds\"; expected one of ms, error");
+    CHECK(message("seconds=1")
+          == "--budget:1:1: \"budget\" has no key \"seconds\"; expected one of ms, error");
     CHECK(message("ms=fast") == "--budget:1:5: budget.ms: expected a number above 0, found \"fast\"");
 }
 

@@ -109,7 +109,7 @@ TEST_CASE("Floats come back bit for bit") {
         write_image(directory / "a.exr", image);
         const ImageFile read = read_image(directory / "a.exr");
         CHECK(same_values(read.image, image));
-            CHECK(read.coding.bits != 8);
+        CHECK(read.coding.bits != 8);
         CHECK(same_values(read_image(directory / "a.exr", {.role = Role::data}).image, image));
     }
 }

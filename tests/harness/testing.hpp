@@ -26,9 +26,13 @@ struct Input {
 /// index, "skip" the chain's Skip as a number.
 using Values = std::map<std::string, double>;
 
-/// Is there a GL 4.5 context on this machine? If not, `why` says what was found; GL tests then print it and
-/// skip.
+/// Is there a GL 4.5 context on this machine? If not, `why` says what was found; GL tests then skip.
 bool has_gl(std::string* why = nullptr);
+/// Does a test that can't run without OpenGL or a window fail instead of being skipped? POSTFX_REQUIRE_GL=1 says so.
+bool requires_gl();
+/// What main() returns when the test can't run here, after printing why: 77, which CTest shows as skipped, or 1 if
+/// OpenGL is required.
+int skipped(const std::string& why);
 
 /// Run one effect, in rgba32f working targets unless told otherwise; the result has 4 channels.
 /// Uses the plugin of the catalog that the build made. Throws postfx::Error.
