@@ -15,10 +15,14 @@ status=0
 # One slow test leaves time for others.
 ctest --test-dir "$directory" --timeout $((seconds / 3)) --stop-time "$(date -d "+$seconds seconds" +%T)" "$@" 2>&1 |
   tee "$log" || status=$?
-if ((status == 0)); then exit 0; fi
-
-ended=$(sed -n 's/^\t *[0-9]* - \([^ ]*\) (.*)$/&/p' "$log") # "	  3 - name (Failed)"
-failed=$(grep -v '(Timeout)$' <<<"$ended" | awk '{ print $3 }')
-cut=$(grep '(Timeout)$' <<<"$ended" | awk '{ print $3 }')
-if [[ -n $cut ]]; then echo "Cut off after $seconds seconds in all, $((seconds / 3)) each: $(xargs <<<"$cut")"; fi
-if [[ -n $failed || -z $cut ]]; then exit 1; fi
+listed_as() { awk -v kind="$1" '/^\t *[0-9]+ - .*\(.*\)$/ && (/\(Timeout\)$/ ? "cut" : "failed") == kind { print $3 }' "$log"; }
+failed=$(listed_as failed)
+cut=$(listed_as cut)
+ended=$(grep -c '^ *[0-9]*/[0-9]* Test *#' "$log") || true
+wanted=$(ctest --test-dir "$directory" -N "$@" | sed -n 's/^Total Tests: //p')
+said="$ended of $wanted tests began within $seconds s"
+if [[ -n $cut ]]; then said+="; cut off after at most $((seconds / 3)) s: $(xargs <<<"$cut")"; fi
+if [[ -n $failed ]]; then said+="; failed: $(xargs <<<"$failed")"; fi
+echo "$said"
+if [[ -n $failed ]]; then exit 1; fi
+if [[ -z $cut ]] && ((ended == wanted)); then exit "$status"; fi
