@@ -134,9 +134,12 @@ std::string death_of(int status) {
     if (!WIFSIGNALED(status)) return fmt::format("the reader stopped with status {}", WEXITSTATUS(status));
     switch (WTERMSIG(status)) {
     case SIGXCPU:
-    case SIGALRM: return "the reader ran out of time";
-    case SIGKILL: return "the reader was killed, perhaps for want of memory";
-    default: return fmt::format("the reader crashed ({})", ::strsignal(WTERMSIG(status)));
+    case SIGALRM:
+        return "the reader ran out of time";
+    case SIGKILL:
+        return "the reader was killed, perhaps for want of memory";
+    default:
+        return fmt::format("the reader crashed ({})", ::strsignal(WTERMSIG(status)));
     }
 }
 
@@ -154,7 +157,8 @@ Model read_model_in_child(const std::filesystem::path& file) {
         return Error(Place{.file = file.string()}, fmt::format("can't read this model: {}", why));
     };
     try {
-        return read_model_stream([&](void* bytes, std::size_t size) { child.read(bytes, size); }, half_of_memory());
+        return read_model_stream([&](void* bytes, std::size_t size) { child.read(bytes, size); },
+                                 half_of_memory());
     } catch (const Error&) {
         throw;
     } catch (const std::bad_alloc&) {
@@ -179,7 +183,8 @@ void read_model_for_parent(const std::filesystem::path& file) {
     } catch (const std::bad_alloc&) {
         writer.out_of_memory();
     } catch (const std::exception& error) {
-        writer.error(Error(Place{.file = file.string()}, fmt::format("can't read this model: {}", error.what())));
+        writer.error(
+            Error(Place{.file = file.string()}, fmt::format("can't read this model: {}", error.what())));
     }
 }
 

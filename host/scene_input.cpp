@@ -39,7 +39,8 @@ void SceneOptions::declare(CLI::App& app) {
     app.add_option("--time", time_, "Seconds after the scene's start")
         ->check(finite())
         ->capture_default_str();
-    app.add_option("--camera", camera_, "A camera of the model by its name, instead of one that sees all of it")
+    app.add_option("--camera", camera_,
+                   "A camera of the model by its name, instead of one that sees all of it")
         ->type_name("NAME");
     app.add_flag("--strict", strict_, "Refuse a scene of whose files something would be left out");
     app.add_flag("--no-fuse", no_fuse_, "Let every effect write its own target");

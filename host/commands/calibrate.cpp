@@ -139,9 +139,7 @@ private:
 
     study::StudyScene& scene(const std::string& name) {
         std::unique_ptr<study::StudyScene>& found = scenes_[name];
-        if (!found)
-            found =
-                std::make_unique<study::StudyScene>(open_known_scene(name));
+        if (!found) found = std::make_unique<study::StudyScene>(open_known_scene(name));
         return *found;
     }
 

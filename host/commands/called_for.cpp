@@ -143,7 +143,9 @@ public:
             ->type_name("CHAIN")
             ->capture_default_str();
         app.add_option("--size", size_, "Of the picture, pixels")->type_name("WxH")->capture_default_str();
-        app.add_option("--time", time_, "Seconds after the scenes' start")->check(finite())->capture_default_str();
+        app.add_option("--time", time_, "Seconds after the scenes' start")
+            ->check(finite())
+            ->capture_default_str();
         app.add_option("--samples", samples_, "Rounds; each draws everything of a scene once")
             ->check(CLI::Range(3, 100000))
             ->capture_default_str();

@@ -49,7 +49,9 @@ public:
             ->default_str("")
             ->allow_extra_args(false);
         app.add_option("--size", size_, "Of the picture, pixels")->type_name("WxH")->capture_default_str();
-        app.add_option("--time", time_, "Seconds after the scene's start")->check(finite())->capture_default_str();
+        app.add_option("--time", time_, "Seconds after the scene's start")
+            ->check(finite())
+            ->capture_default_str();
         app.add_option("--samples", samples_, "Of the truth, an even number; its own default without")
             ->check(CLI::Range(2, 1 << 24))
             ->type_name("N")

@@ -9,10 +9,14 @@ namespace {
 
 std::optional<Track>& track_of(NodeKeys& keys, AnimationClip::Target target) {
     switch (target) {
-    case AnimationClip::Target::translation: return keys.translations;
-    case AnimationClip::Target::rotation: return keys.rotations;
-    case AnimationClip::Target::scale: return keys.scales;
-    case AnimationClip::Target::shape_weights: break;
+    case AnimationClip::Target::translation:
+        return keys.translations;
+    case AnimationClip::Target::rotation:
+        return keys.rotations;
+    case AnimationClip::Target::scale:
+        return keys.scales;
+    case AnimationClip::Target::shape_weights:
+        break;
     }
     return keys.shape_weights;
 }
@@ -26,16 +30,17 @@ double duration_of(const AnimationClip& clip) {
 
 } // namespace
 
-void play_clips(std::vector<AnimationClip> clips, const std::vector<NodeKeys>& at_rest, std::vector<Node>& nodes,
-                Losses& losses) {
+void play_clips(std::vector<AnimationClip> clips, const std::vector<NodeKeys>& at_rest,
+                std::vector<Node>& nodes, Losses& losses) {
     static const LossKind kind{"animation is left out, for another moves the same nodes",
                                "animations are left out, for others move the same nodes"};
     std::map<std::size_t, NodeKeys> keys;
     std::set<std::pair<std::size_t, AnimationClip::Target>> moved;
     for (AnimationClip& clip : clips) {
-        const bool clashes = std::any_of(clip.channels.begin(), clip.channels.end(), [&](const auto& channel) {
-            return moved.contains({channel.node, channel.target});
-        });
+        const bool clashes =
+            std::any_of(clip.channels.begin(), clip.channels.end(), [&](const auto& channel) {
+                return moved.contains({channel.node, channel.target});
+            });
         if (clashes) {
             losses.add(kind, clip.name);
             continue;

@@ -22,7 +22,7 @@ struct AnimationClip {
 
 /// Put key frames into nodes, which lie as `at_rest` says where nothing moves them. All clips that don't move the same
 /// things are played together; the others are a loss.
-void play_clips(std::vector<AnimationClip> clips, const std::vector<NodeKeys>& at_rest, std::vector<Node>& nodes,
-                Losses& losses);
+void play_clips(std::vector<AnimationClip> clips, const std::vector<NodeKeys>& at_rest,
+                std::vector<Node>& nodes, Losses& losses);
 
 } // namespace postfx::host

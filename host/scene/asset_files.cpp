@@ -54,7 +54,8 @@ std::vector<std::uint8_t> decode_base64(std::string_view text) {
 std::string percent_decoded(const std::string& uri) {
     std::string result;
     for (std::size_t i = 0; i < uri.size(); ++i) {
-        const bool escape = uri[i] == '%' && i + 2 < uri.size() && hex_digit(uri[i + 1]) >= 0 && hex_digit(uri[i + 2]) >= 0;
+        const bool escape =
+            uri[i] == '%' && i + 2 < uri.size() && hex_digit(uri[i + 1]) >= 0 && hex_digit(uri[i + 2]) >= 0;
         if (escape) {
             result += static_cast<char>(16 * hex_digit(uri[i + 1]) + hex_digit(uri[i + 2]));
             i += 2;
@@ -72,7 +73,8 @@ std::optional<std::filesystem::path> find_asset(const std::filesystem::path& mod
     std::replace(slashes.begin(), slashes.end(), '\\', '/');
     for (const std::string& path : {percent_decoded(plain), plain, percent_decoded(slashes), slashes}) {
         const std::size_t last = path.find_last_of('/');
-        for (const std::string& candidate : {path, last == std::string::npos ? path : path.substr(last + 1)}) {
+        for (const std::string& candidate :
+             {path, last == std::string::npos ? path : path.substr(last + 1)}) {
             if (candidate.empty() || candidate.find('\0') != std::string::npos) continue;
             std::error_code problem;
             const std::filesystem::path file = folder_of(model) / candidate;

@@ -10,14 +10,15 @@ using Target = AnimationClip::Target;
 
 /// `numbers(key)` gives a key's values. Keys that are not later than the one before are left out.
 template<class Key, class Numbers>
-void add_channel(AnimationClip& clip, std::size_t node, Target target, const Key* keys, unsigned count, double per_second,
-                 Numbers numbers) {
+void add_channel(AnimationClip& clip, std::size_t node, Target target, const Key* keys, unsigned count,
+                 double per_second, Numbers numbers) {
     Track track;
     for (unsigned i = 0; i < count; ++i) {
         const auto time = static_cast<float>(keys[i].mTime / per_second);
         const std::vector<float> values = numbers(keys[i]);
-        const bool finite = std::isfinite(time)
-                            && std::all_of(values.begin(), values.end(), [](float v) { return std::isfinite(v); });
+        const bool finite = std::isfinite(time) && std::all_of(values.begin(), values.end(), [](float v) {
+                                return std::isfinite(v);
+                            });
         if (!finite || (!track.times.empty() && time <= track.times.back())) continue;
         track.width = static_cast<std::uint32_t>(values.size());
         track.times.push_back(time);
@@ -32,7 +33,8 @@ std::vector<float> vector_key(const aiVectorKey& key) {
 
 } // namespace
 
-AnimationClip read_assimp_animation(const aiAnimation& source, const std::map<std::string, std::size_t>& node_by_name,
+AnimationClip read_assimp_animation(const aiAnimation& source,
+                                    const std::map<std::string, std::size_t>& node_by_name,
                                     const std::vector<Node>& nodes) {
     constexpr double usual_ticks = 25; // per second, where a file does not say
     const double per_second = source.mTicksPerSecond > 0 ? source.mTicksPerSecond : usual_ticks;
@@ -41,13 +43,14 @@ AnimationClip read_assimp_animation(const aiAnimation& source, const std::map<st
         const aiNodeAnim& channel = *source.mChannels[i];
         const auto node = node_by_name.find(channel.mNodeName.C_Str());
         if (node == node_by_name.end()) continue;
-        add_channel(clip, node->second, Target::translation, channel.mPositionKeys, channel.mNumPositionKeys, per_second,
-                    vector_key);
-        add_channel(clip, node->second, Target::rotation, channel.mRotationKeys, channel.mNumRotationKeys, per_second,
-                    [](const aiQuatKey& key) {
+        add_channel(clip, node->second, Target::translation, channel.mPositionKeys, channel.mNumPositionKeys,
+                    per_second, vector_key);
+        add_channel(clip, node->second, Target::rotation, channel.mRotationKeys, channel.mNumRotationKeys,
+                    per_second, [](const aiQuatKey& key) {
                         return std::vector<float>{key.mValue.x, key.mValue.y, key.mValue.z, key.mValue.w};
                     });
-        add_channel(clip, node->second, Target::scale, channel.mScalingKeys, channel.mNumScalingKeys, per_second, vector_key);
+        add_channel(clip, node->second, Target::scale, channel.mScalingKeys, channel.mNumScalingKeys,
+                    per_second, vector_key);
     }
     for (unsigned i = 0; i < source.mNumMorphMeshChannels; ++i) {
         const aiMeshMorphAnim& channel = *source.mMorphMeshChannels[i];
@@ -60,7 +63,8 @@ AnimationClip read_assimp_animation(const aiAnimation& source, const std::map<st
                         [shapes](const aiMeshMorphKey& key) {
                             std::vector<float> weights(shapes, 0.0f);
                             for (unsigned k = 0; k < key.mNumValuesAndWeights; ++k) {
-                                if (key.mValues[k] < shapes) weights[key.mValues[k]] = static_cast<float>(key.mWeights[k]);
+                                if (key.mValues[k] < shapes)
+                                    weights[key.mValues[k]] = static_cast<float>(key.mWeights[k]);
                             }
                             return weights;
                         });

@@ -38,7 +38,8 @@ public:
         if (source_.Get(AI_MATKEY_NAME, name) == aiReturn_SUCCESS) material.name = name.C_Str();
         aiColor3D color;
         if (source_.Get(AI_MATKEY_COLOR_DIFFUSE, color) == aiReturn_SUCCESS) material.diffuse = to_glm(color);
-        if (source_.Get(AI_MATKEY_COLOR_EMISSIVE, color) == aiReturn_SUCCESS) material.emission = to_glm(color);
+        if (source_.Get(AI_MATKEY_COLOR_EMISSIVE, color) == aiReturn_SUCCESS)
+            material.emission = to_glm(color);
         source_.Get(AI_MATKEY_OPACITY, material.opacity);
         material.blended = material.opacity < 1;
         material.diffuse_texture = texture({aiTextureType_BASE_COLOR, aiTextureType_DIFFUSE}, true);
@@ -57,7 +58,9 @@ private:
             aiString name;
             unsigned set = 0;
             aiTextureMapMode modes[3] = {aiTextureMapMode_Wrap, aiTextureMapMode_Wrap, aiTextureMapMode_Wrap};
-            if (source_.GetTexture(type, 0, &name, nullptr, &set, nullptr, nullptr, modes) != aiReturn_SUCCESS) continue;
+            if (source_.GetTexture(type, 0, &name, nullptr, &set, nullptr, nullptr, modes)
+                != aiReturn_SUCCESS)
+                continue;
             Source result{name.C_Str(), {}, set};
             result.sampler.wrap_u = wrap_of(modes[0]);
             result.sampler.wrap_v = wrap_of(modes[1]);
@@ -71,7 +74,8 @@ private:
         if (const auto source = find(types)) {
             result.picture = picture(source->name, srgb);
             result.sampler = source->sampler;
-            if (result.picture) result.uv_set = pick_uv_set(source->uv_set, result_.uv_sets, result_.material.name, losses_);
+            if (result.picture)
+                result.uv_set = pick_uv_set(source->uv_set, result_.uv_sets, result_.material.name, losses_);
         }
         return result;
     }
@@ -80,7 +84,8 @@ private:
         const aiTexture* embedded = scene_.GetEmbeddedTexture(name.c_str());
         if (!embedded) return pictures_.file(name, srgb);
         if (embedded->mHeight != 0) {
-            static const LossKind kind{"embedded texture is no picture file", "embedded textures are no picture files"};
+            static const LossKind kind{"embedded texture is no picture file",
+                                       "embedded textures are no picture files"};
             losses_.add(kind, name);
             return nullptr;
         }
@@ -96,8 +101,10 @@ private:
         if (material.metal_rough) return;
         aiColor3D color;
         float number = 0;
-        if (source_.Get(AI_MATKEY_COLOR_SPECULAR, color) == aiReturn_SUCCESS) material.specular = to_glm(color);
-        if (source_.Get(AI_MATKEY_SHININESS, number) == aiReturn_SUCCESS && number > 0) material.shininess = number;
+        if (source_.Get(AI_MATKEY_COLOR_SPECULAR, color) == aiReturn_SUCCESS)
+            material.specular = to_glm(color);
+        if (source_.Get(AI_MATKEY_SHININESS, number) == aiReturn_SUCCESS && number > 0)
+            material.shininess = number;
     }
 
     /// A picture of opacity alone, as OBJ's map_d.
@@ -106,12 +113,14 @@ private:
         if (!mask || scene_.GetEmbeddedTexture(mask->name.c_str())) return;
         const auto color = find({aiTextureType_BASE_COLOR, aiTextureType_DIFFUSE});
         const bool separate = color && scene_.GetEmbeddedTexture(color->name.c_str());
-        const ModelPictures::Masked masked = pictures_.masked(color && !separate ? color->name : "", mask->name);
+        const ModelPictures::Masked masked =
+            pictures_.masked(color && !separate ? color->name : "", mask->name);
         if (!masked.picture) return;
         material.diffuse_texture.picture = masked.picture;
         if (!color) {
             material.diffuse_texture.sampler = mask->sampler;
-            material.diffuse_texture.uv_set = pick_uv_set(mask->uv_set, result_.uv_sets, result_.material.name, losses_);
+            material.diffuse_texture.uv_set =
+                pick_uv_set(mask->uv_set, result_.uv_sets, result_.material.name, losses_);
         }
         if (masked.cuts && !material.blended) {
             material.alpha_cutoff = 0.5f;
@@ -121,11 +130,13 @@ private:
     }
 
     void count_unused() {
-        static const LossKind kind{"texture is of a use that postfx doesn't have", "textures are of uses that postfx doesn't have"};
+        static const LossKind kind{"texture is of a use that postfx doesn't have",
+                                   "textures are of uses that postfx doesn't have"};
         const auto color = find({aiTextureType_BASE_COLOR, aiTextureType_DIFFUSE});
-        for (const aiTextureType type : {aiTextureType_SPECULAR, aiTextureType_AMBIENT, aiTextureType_HEIGHT, aiTextureType_SHININESS,
-                                         aiTextureType_DISPLACEMENT, aiTextureType_LIGHTMAP, aiTextureType_REFLECTION,
-                                         aiTextureType_METALNESS, aiTextureType_DIFFUSE_ROUGHNESS}) {
+        for (const aiTextureType type :
+             {aiTextureType_SPECULAR, aiTextureType_AMBIENT, aiTextureType_HEIGHT, aiTextureType_SHININESS,
+              aiTextureType_DISPLACEMENT, aiTextureType_LIGHTMAP, aiTextureType_REFLECTION,
+              aiTextureType_METALNESS, aiTextureType_DIFFUSE_ROUGHNESS}) {
             const auto unused = find({type});
             if (unused && !(color && color->name == unused->name))
                 losses_.add(kind, fmt::format("{}: {}", aiTextureTypeToString(type), unused->name));

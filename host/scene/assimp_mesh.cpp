@@ -69,8 +69,8 @@ void read_bones(const aiMesh& source, Deformation& deformation) {
 } // namespace
 
 glm::dmat4 to_glm(const aiMatrix4x4& m) {
-    return glm::dmat4(
-        glm::mat4(m.a1, m.b1, m.c1, m.d1, m.a2, m.b2, m.c2, m.d2, m.a3, m.b3, m.c3, m.d3, m.a4, m.b4, m.c4, m.d4));
+    return glm::dmat4(glm::mat4(m.a1, m.b1, m.c1, m.d1, m.a2, m.b2, m.c2, m.d2, m.a3, m.b3, m.c3, m.d3, m.a4,
+                                m.b4, m.c4, m.d4));
 }
 
 Mesh read_assimp_mesh(const aiMesh& source, const std::vector<std::size_t>& uv_sets, Losses& losses) {

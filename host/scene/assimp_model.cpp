@@ -111,7 +111,8 @@ public:
 private:
     /// Parents first, then what stands in the nodes: bones may come later than what they move.
     void add_nodes() {
-        std::vector<std::pair<const aiNode*, std::optional<std::size_t>>> open{{scene_.mRootNode, std::nullopt}};
+        std::vector<std::pair<const aiNode*, std::optional<std::size_t>>> open{
+            {scene_.mRootNode, std::nullopt}};
         std::vector<const aiNode*> sources;
         for (std::size_t i = 0; i < open.size(); ++i) {
             const auto [source, parent] = open[i];
@@ -178,7 +179,8 @@ private:
             const auto node = node_by_name_.find(source.mName.C_Str());
             if (node == node_by_name_.end()) continue;
             const auto vector = [](const aiVector3D& v) {
-                return glm::dvec3(static_cast<double>(v.x), static_cast<double>(v.y), static_cast<double>(v.z));
+                return glm::dvec3(static_cast<double>(v.x), static_cast<double>(v.y),
+                                  static_cast<double>(v.z));
             };
             NamedCamera camera{{source.mName.C_Str()}, {}};
             camera.camera.parent = node->second;
@@ -188,7 +190,8 @@ private:
             const double aspect = source.mAspect > 0 ? static_cast<double>(source.mAspect) : 1;
             const double half = std::tan(static_cast<double>(source.mHorizontalFOV) / 2) / aspect;
             camera.camera.vertical_fov = std::clamp(2 * glm::degrees(std::atan(half)), 1.0, 170.0);
-            if (source.mClipPlaneNear > 0) camera.camera.near_plane = static_cast<double>(source.mClipPlaneNear);
+            if (source.mClipPlaneNear > 0)
+                camera.camera.near_plane = static_cast<double>(source.mClipPlaneNear);
             model_.cameras.push_back(std::move(camera));
         }
     }
@@ -212,7 +215,8 @@ private:
         } catch (...) { // NOLINT(bugprone-empty-catch): the message below says it
         }
     }
-    throw Error({file.string(), 0, 0, {}, {}}, fmt::format("can't read this model: {}", importer.GetErrorString()));
+    throw Error({file.string(), 0, 0, {}, {}},
+                fmt::format("can't read this model: {}", importer.GetErrorString()));
 }
 
 } // namespace
@@ -221,11 +225,11 @@ Model read_with_assimp(const std::filesystem::path& file, const ReadingHooks& ho
     Assimp::Importer importer;
     // Beside the file, so that the names in it are found from there.
     const std::string alias = (folder_of(file) / ("postfx-model" + usual_ending(file))).string();
-    importer.SetIOHandler(new AssetSystem(file, alias, hooks)); // the importer deletes it
+    importer.SetIOHandler(new AssetSystem(file, alias, hooks));          // the importer deletes it
     importer.SetPropertyFloat(AI_CONFIG_PP_GSN_MAX_SMOOTHING_ANGLE, 40); // sharper edges stay edges
     const aiScene* scene = importer.ReadFile(
         alias, aiProcess_Triangulate | aiProcess_GenSmoothNormals | aiProcess_JoinIdenticalVertices
-                           | aiProcess_SortByPType | aiProcess_ImproveCacheLocality | aiProcess_TransformUVCoords);
+                   | aiProcess_SortByPType | aiProcess_ImproveCacheLocality | aiProcess_TransformUVCoords);
     if (!scene || !scene->mRootNode) fail(file, importer);
     return AssimpReader(file, *scene, hooks).read();
 }

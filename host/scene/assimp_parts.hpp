@@ -23,7 +23,8 @@ AssimpMaterial read_assimp_material(const aiScene& scene, const aiMaterial& sour
                                     Losses& losses);
 /// The triangles; the joints of vertices are the mesh's bones in their order.
 Mesh read_assimp_mesh(const aiMesh& source, const std::vector<std::size_t>& uv_sets, Losses& losses);
-AnimationClip read_assimp_animation(const aiAnimation& source, const std::map<std::string, std::size_t>& node_by_name,
+AnimationClip read_assimp_animation(const aiAnimation& source,
+                                    const std::map<std::string, std::size_t>& node_by_name,
                                     const std::vector<Node>& nodes);
 
 } // namespace postfx::host

@@ -5,7 +5,8 @@
 namespace postfx::host {
 namespace {
 
-void add_shapes(const Deformation& deformation, const std::vector<float>& weights, std::vector<Vertex>& vertices) {
+void add_shapes(const Deformation& deformation, const std::vector<float>& weights,
+                std::vector<Vertex>& vertices) {
     const std::size_t count = std::min(weights.size(), deformation.shapes.size());
     for (std::size_t i = 0; i < count; ++i) {
         const Deformation::Shape& shape = deformation.shapes[i];
@@ -28,7 +29,8 @@ void move_with_joints(const Deformation& deformation, const std::vector<glm::mat
     for (std::size_t v = 0; v < vertices.size(); ++v) {
         glm::mat4 placement(0);
         for (std::size_t i = v * influences; i < (v + 1) * influences; ++i) {
-            if (deformation.weights[i] != 0) placement += deformation.weights[i] * joints[deformation.joints[i]];
+            if (deformation.weights[i] != 0)
+                placement += deformation.weights[i] * joints[deformation.joints[i]];
         }
         vertices[v].position = glm::vec3(placement * glm::vec4(vertices[v].position, 1));
         vertices[v].normal = glm::mat3(normal_matrix(glm::dmat4(placement))) * vertices[v].normal;
@@ -40,7 +42,7 @@ void move_with_joints(const Deformation& deformation, const std::vector<glm::mat
 glm::dmat3 normal_matrix(const glm::dmat4& placement) {
     const glm::dvec3 x(placement[0]), y(placement[1]), z(placement[2]);
     glm::dmat3 result(glm::cross(y, z), glm::cross(z, x), glm::cross(x, y)); // the inverse's transpose, times
-    double largest = 0;                                                     // the determinant
+    double largest = 0;                                                      // the determinant
     for (int axis = 0; axis < 3; ++axis) {
         for (int row = 0; row < 3; ++row)
             largest = std::max(largest, std::abs(result[axis][row]));

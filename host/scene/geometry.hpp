@@ -52,8 +52,8 @@ struct Deformation {
 
 struct Mesh {
     std::vector<Vertex> vertices;
-    std::vector<std::uint32_t> indices; ///< three per triangle
-    std::vector<VertexExtra> extras;    ///< one per vertex, or none at all
+    std::vector<std::uint32_t> indices;             ///< three per triangle
+    std::vector<VertexExtra> extras;                ///< one per vertex, or none at all
     std::shared_ptr<const Deformation> deformation; ///< null: it keeps its shape
 
     bool empty() const { return indices.empty(); }

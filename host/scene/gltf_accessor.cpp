@@ -20,13 +20,20 @@ struct Component {
 
 Component component_of(const GltfDocument& document, std::size_t type) {
     switch (type) {
-    case 5120: return {1, 127};
-    case 5121: return {1, 255};
-    case 5122: return {2, 32767};
-    case 5123: return {2, 65535};
-    case 5125: return {4, 4294967295.0};
-    case 5126: return {4, 1};
-    default: document.fail(fmt::format("componentType {} is none of glTF's", type));
+    case 5120:
+        return {1, 127};
+    case 5121:
+        return {1, 255};
+    case 5122:
+        return {2, 32767};
+    case 5123:
+        return {2, 65535};
+    case 5125:
+        return {4, 4294967295.0};
+    case 5126:
+        return {4, 1};
+    default:
+        document.fail(fmt::format("componentType {} is none of glTF's", type));
     }
 }
 
@@ -39,18 +46,25 @@ double value_at(const std::uint8_t* bytes) {
 
 double read_component(std::size_t type, const std::uint8_t* bytes) {
     switch (type) {
-    case 5120: return value_at<std::int8_t>(bytes);
-    case 5121: return value_at<std::uint8_t>(bytes);
-    case 5122: return value_at<std::int16_t>(bytes);
-    case 5123: return value_at<std::uint16_t>(bytes);
-    case 5125: return value_at<std::uint32_t>(bytes);
-    default: return value_at<float>(bytes);
+    case 5120:
+        return value_at<std::int8_t>(bytes);
+    case 5121:
+        return value_at<std::uint8_t>(bytes);
+    case 5122:
+        return value_at<std::int16_t>(bytes);
+    case 5123:
+        return value_at<std::uint16_t>(bytes);
+    case 5125:
+        return value_at<std::uint32_t>(bytes);
+    default:
+        return value_at<float>(bytes);
     }
 }
 
 /// Elements that lie somewhere in a buffer view.
 struct Layout {
-    std::size_t type, count, width, columns; ///< columns: of a matrix, each of which begins at a multiple of 4 bytes
+    std::size_t type, count, width,
+        columns; ///< columns: of a matrix, each of which begins at a multiple of 4 bytes
 };
 
 /// Call visit(index of the number among all, value) for every number.
@@ -62,14 +76,16 @@ void read_elements(const GltfDocument& document, const Json& where, const Layout
     const std::size_t rows = layout.width / layout.columns;
     const std::size_t column_bytes = layout.columns == 1 ? rows * size : (rows * size + 3) / 4 * 4;
     const std::size_t packed = column_bytes * layout.columns;
-    const std::size_t stride = document.find_index(document.item("bufferViews", view), "byteStride").value_or(packed);
+    const std::size_t stride =
+        document.find_index(document.item("bufferViews", view), "byteStride").value_or(packed);
     const std::size_t offset = document.find_index(where, "byteOffset").value_or(0);
     if (layout.count == 0) return;
-    const bool fits = stride >= packed && offset <= bytes.size() && packed <= bytes.size() - offset
-                      && (layout.count - 1) <= (bytes.size() - offset - packed) / std::max<std::size_t>(stride, 1);
+    const bool fits =
+        stride >= packed && offset <= bytes.size() && packed <= bytes.size() - offset
+        && (layout.count - 1) <= (bytes.size() - offset - packed) / std::max<std::size_t>(stride, 1);
     if (!fits) {
-        document.fail(fmt::format("bufferViews[{}] has {} bytes, too few for {} elements of {} bytes each", view,
-                                  bytes.size(), layout.count, packed));
+        document.fail(fmt::format("bufferViews[{}] has {} bytes, too few for {} elements of {} bytes each",
+                                  view, bytes.size(), layout.count, packed));
     }
     for (std::size_t element = 0; element < layout.count; ++element) {
         for (std::size_t i = 0; i < layout.width; ++i) {
@@ -90,7 +106,8 @@ constexpr std::size_t most_zeros = std::size_t{1} << 24u;
 std::vector<double> read_accessor(const GltfDocument& document, std::size_t index, std::size_t width) {
     const Json& accessor = document.item("accessors", index);
     if (const std::size_t has = accessor_width(document, index); has != width)
-        document.fail(fmt::format("accessors[{}] has {} numbers to an element, expected {}", index, has, width));
+        document.fail(
+            fmt::format("accessors[{}] has {} numbers to an element, expected {}", index, has, width));
     const Layout layout{document.index(accessor, "componentType"), document.index(accessor, "count"), width,
                         columns_of(accessor)};
     const Component component = component_of(document, layout.type);
@@ -101,14 +118,17 @@ std::vector<double> read_accessor(const GltfDocument& document, std::size_t inde
     const bool has_view = accessor.contains("bufferView");
     const std::size_t view_size =
         has_view ? document.view_bytes(document.index(accessor, "bufferView")).size() : most_zeros;
-    if (layout.count > view_size) document.fail(fmt::format("accessors[{}] has no bytes for {} elements", index, layout.count));
+    if (layout.count > view_size)
+        document.fail(fmt::format("accessors[{}] has no bytes for {} elements", index, layout.count));
     std::vector<double> values(layout.count * width, 0.0);
     if (has_view) {
-        read_elements(document, accessor, layout, [&](std::size_t i, double value) { values[i] = scaled(value); });
+        read_elements(document, accessor, layout,
+                      [&](std::size_t i, double value) { values[i] = scaled(value); });
     }
     if (const auto sparse = accessor.find("sparse"); sparse != accessor.end()) {
         const std::size_t count = document.index(*sparse, "count");
-        if (count > layout.count) document.fail(fmt::format("accessors[{}] has more sparse values than values", index));
+        if (count > layout.count)
+            document.fail(fmt::format("accessors[{}] has more sparse values than values", index));
         const Json& places = sparse->at("indices");
         std::vector<std::size_t> targets(count);
         read_elements(document, places, {document.index(places, "componentType"), count, 1, 1},
@@ -117,7 +137,8 @@ std::vector<double> read_accessor(const GltfDocument& document, std::size_t inde
                       [&](std::size_t i, double value) {
                           const std::size_t element = targets[i / width];
                           if (element >= layout.count)
-                              document.fail(fmt::format("accessors[{}] has a sparse value for element {}", index, element));
+                              document.fail(fmt::format("accessors[{}] has a sparse value for element {}",
+                                                        index, element));
                           values[element * width + i % width] = scaled(value);
                       });
     }
@@ -139,11 +160,13 @@ std::size_t accessor_width(const GltfDocument& document, std::size_t accessor) {
 std::vector<float> read_numbers(const GltfDocument& document, std::size_t accessor, std::size_t width) {
     const std::vector<double> values = read_accessor(document, accessor, width);
     std::vector<float> result(values.size());
-    std::transform(values.begin(), values.end(), result.begin(), [](double value) { return static_cast<float>(value); });
+    std::transform(values.begin(), values.end(), result.begin(),
+                   [](double value) { return static_cast<float>(value); });
     return result;
 }
 
-std::vector<std::uint32_t> read_integers(const GltfDocument& document, std::size_t accessor, std::size_t width) {
+std::vector<std::uint32_t> read_integers(const GltfDocument& document, std::size_t accessor,
+                                         std::size_t width) {
     if (document.index(document.item("accessors", accessor), "componentType") == 5126)
         document.fail(fmt::format("accessors[{}] has fractions, expected whole numbers", accessor));
     const std::vector<double> values = read_accessor(document, accessor, width);

@@ -40,11 +40,13 @@ Track read_track(const GltfDocument& document, const Json& sampler, std::size_t 
     track.values = read_numbers(document, output, accessor_width(document, output));
     const std::size_t per_key = width * (track.interpolation == Track::Interpolation::cubic ? 3 : 1);
     if (track.times.empty() || track.values.size() != per_key * track.times.size()) {
-        document.fail(fmt::format("an animation has {} keys and {} numbers, expected {} to a key", track.times.size(),
-                                  track.values.size(), per_key));
+        document.fail(fmt::format("an animation has {} keys and {} numbers, expected {} to a key",
+                                  track.times.size(), track.values.size(), per_key));
     }
-    if (!are_finite(track.times) || !are_finite(track.values)) document.fail("an animation has keys that are not finite");
-    if (std::adjacent_find(track.times.begin(), track.times.end(), std::greater_equal<>()) != track.times.end())
+    if (!are_finite(track.times) || !are_finite(track.values))
+        document.fail("an animation has keys that are not finite");
+    if (std::adjacent_find(track.times.begin(), track.times.end(), std::greater_equal<>())
+        != track.times.end())
         document.fail("the keys of an animation are not in the order of their times");
     return track;
 }
@@ -60,9 +62,11 @@ AnimationClip read_clip(const GltfDocument& document, const Json& animation,
         if (!node || !target) continue; // glTF: to be ignored
         document.item("nodes", *node);
         const std::size_t index = node_of_gltf[*node], sampler = document.index(channel, "sampler");
-        if (sampler >= samplers.size()) document.fail(fmt::format("an animation has no samplers[{}]", sampler));
+        if (sampler >= samplers.size())
+            document.fail(fmt::format("an animation has no samplers[{}]", sampler));
         const std::size_t width = width_of(*target, nodes[index]);
-        if (width > 0) clip.channels.push_back({index, *target, read_track(document, samplers[sampler], width)});
+        if (width > 0)
+            clip.channels.push_back({index, *target, read_track(document, samplers[sampler], width)});
     }
     return clip;
 }

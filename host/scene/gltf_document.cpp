@@ -95,10 +95,10 @@ void GltfDocument::read_container() {
 
 void GltfDocument::check_version() const {
     const auto asset = json_.find("asset");
-    const std::string version =
-        asset != json_.end() && asset->is_object() && asset->contains("version") && asset->at("version").is_string()
-            ? asset->at("version").get<std::string>()
-            : "";
+    const std::string version = asset != json_.end() && asset->is_object() && asset->contains("version")
+                                        && asset->at("version").is_string()
+                                    ? asset->at("version").get<std::string>()
+                                    : "";
     if (!version.starts_with("2.")) fail(fmt::format("this is glTF of version \"{}\", expected 2", version));
 }
 
@@ -113,7 +113,8 @@ void GltfDocument::check_extensions(Losses& losses) const {
     };
     try {
         for (const std::string& name : names("extensionsRequired")) {
-            if (!known(name)) fail(fmt::format("this model requires the glTF extension {}, which postfx can't read", name));
+            if (!known(name))
+                fail(fmt::format("this model requires the glTF extension {}, which postfx can't read", name));
         }
         static const LossKind kind{"optional extension is left out", "optional extensions are left out"};
         for (const std::string& name : names("extensionsUsed")) {
@@ -130,7 +131,8 @@ std::size_t GltfDocument::count(const char* list) const {
 }
 
 const GltfDocument::Json& GltfDocument::item(const char* list, std::size_t index) const {
-    if (index >= count(list)) fail(fmt::format("this model refers to {}[{}] and has {}", list, index, count(list)));
+    if (index >= count(list))
+        fail(fmt::format("this model refers to {}[{}] and has {}", list, index, count(list)));
     const Json& result = json_.at(list)[index];
     if (!result.is_object()) fail(fmt::format("{}[{}] is no object", list, index));
     return result;
@@ -139,7 +141,8 @@ const GltfDocument::Json& GltfDocument::item(const char* list, std::size_t index
 std::optional<std::size_t> GltfDocument::find_index(const Json& object, const char* key) const {
     const auto found = object.find(key);
     if (found == object.end()) return std::nullopt;
-    if (!found->is_number_unsigned()) fail(fmt::format("\"{}\" is {}, expected a whole number from 0 up", key, found->dump()));
+    if (!found->is_number_unsigned())
+        fail(fmt::format("\"{}\" is {}, expected a whole number from 0 up", key, found->dump()));
     return found->get<std::size_t>();
 }
 
@@ -158,7 +161,8 @@ float GltfDocument::number(const Json& object, const char* key, float otherwise)
     return value;
 }
 
-std::optional<std::vector<float>> GltfDocument::numbers(const Json& object, const char* key, std::size_t count) const {
+std::optional<std::vector<float>> GltfDocument::numbers(const Json& object, const char* key,
+                                                        std::size_t count) const {
     const auto found = object.find(key);
     if (found == object.end()) return std::nullopt;
     std::vector<float> result;
@@ -167,7 +171,8 @@ std::optional<std::vector<float>> GltfDocument::numbers(const Json& object, cons
             if (value.is_number()) result.push_back(value.get<float>());
         }
     }
-    const bool finite = std::all_of(result.begin(), result.end(), [](float value) { return std::isfinite(value); });
+    const bool finite =
+        std::all_of(result.begin(), result.end(), [](float value) { return std::isfinite(value); });
     if (result.size() != count || found->size() != count || !finite)
         fail(fmt::format("\"{}\" is not a list of {} numbers", key, count));
     return result;
@@ -200,7 +205,9 @@ const std::vector<std::uint8_t>& GltfDocument::buffer(std::size_t index) const {
         fail(fmt::format("buffers[{}]: {}", index, error.what()));
     }
     const auto asset = find_asset(file_, name);
-    if (!asset) fail(fmt::format("there is no file \"{}\", which holds this model's geometry", percent_decoded(name)));
+    if (!asset)
+        fail(
+            fmt::format("there is no file \"{}\", which holds this model's geometry", percent_decoded(name)));
     hooks_.opening(std::filesystem::file_size(*asset));
     known->second = read_asset(*asset);
     return known->second;
@@ -211,8 +218,8 @@ GltfDocument::Bytes GltfDocument::view_bytes(std::size_t buffer_view) const {
     const std::vector<std::uint8_t>& bytes = buffer(index(view, "buffer"));
     const std::size_t offset = find_index(view, "byteOffset").value_or(0), length = index(view, "byteLength");
     if (offset > bytes.size() || length > bytes.size() - offset) {
-        fail(fmt::format("bufferViews[{}] needs {} bytes from {} on, and its buffer has {}", buffer_view, length, offset,
-                         bytes.size()));
+        fail(fmt::format("bufferViews[{}] needs {} bytes from {} on, and its buffer has {}", buffer_view,
+                         length, offset, bytes.size()));
     }
     return Bytes(bytes).subspan(offset, length);
 }
@@ -223,7 +230,8 @@ std::optional<std::vector<std::uint8_t>> GltfDocument::image_bytes(std::size_t i
         const Bytes bytes = view_bytes(*view);
         return std::vector<std::uint8_t>(bytes.begin(), bytes.end());
     }
-    if (!image.contains("uri") || !image.at("uri").is_string()) fail(fmt::format("images[{}] has no uri", index));
+    if (!image.contains("uri") || !image.at("uri").is_string())
+        fail(fmt::format("images[{}] has no uri", index));
     try {
         return decode_data_uri(image.at("uri").get<std::string>());
     } catch (const std::invalid_argument& error) {
@@ -237,7 +245,8 @@ bool is_gltf(const std::filesystem::path& file) {
     stream.read(head.data(), head.size());
     if (std::string_view(head.data(), 4) == glb_magic) return head[4] != 1;
     std::error_code unknown;
-    if (model_ending(read_start(file, recognized_bytes, "a model"), std::filesystem::file_size(file, unknown)) != ".gltf")
+    if (model_ending(read_start(file, recognized_bytes, "a model"), std::filesystem::file_size(file, unknown))
+        != ".gltf")
         return false;
     // Version 1 has objects where version 2 has lists.
     stream.clear();

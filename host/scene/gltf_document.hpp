@@ -69,6 +69,7 @@ std::vector<float> read_numbers(const GltfDocument& document, std::size_t access
 /// How many numbers an element of it has.
 std::size_t accessor_width(const GltfDocument& document, std::size_t accessor);
 /// An accessor's whole numbers.
-std::vector<std::uint32_t> read_integers(const GltfDocument& document, std::size_t accessor, std::size_t width);
+std::vector<std::uint32_t> read_integers(const GltfDocument& document, std::size_t accessor,
+                                         std::size_t width);
 
 } // namespace postfx::host

@@ -27,7 +27,8 @@ DracoMesh read_draco(const GltfDocument& document, const GltfDocument::Json& ext
     buffer.Init(reinterpret_cast<const char*>(bytes.data()), bytes.size());
     draco::Decoder decoder;
     auto decoded = decoder.DecodeMeshFromBuffer(&buffer);
-    if (!decoded.ok()) document.fail(fmt::format("can't decompress a mesh (Draco): {}", decoded.status().error_msg()));
+    if (!decoded.ok())
+        document.fail(fmt::format("can't decompress a mesh (Draco): {}", decoded.status().error_msg()));
     const std::unique_ptr<draco::Mesh> mesh = std::move(decoded).value();
 
     DracoMesh result;

@@ -24,9 +24,12 @@ Sampler sampler_of(const GltfDocument& document, const Json& texture) {
     const Json& source = document.item("samplers", *index);
     const auto wrap = [&](const char* key) {
         switch (document.find_index(source, key).value_or(10497)) {
-        case 33071: return Sampler::Wrap::clamp;
-        case 33648: return Sampler::Wrap::mirror;
-        default: return Sampler::Wrap::repeat;
+        case 33071:
+            return Sampler::Wrap::clamp;
+        case 33648:
+            return Sampler::Wrap::mirror;
+        default:
+            return Sampler::Wrap::repeat;
         }
     };
     result.wrap_u = wrap("wrapS");
@@ -51,7 +54,8 @@ glm::mat3x2 placement_of(const GltfDocument& document, const Json& transform) {
     const glm::vec2 offset = pair("offset", {0, 0}), scale = pair("scale", {1, 1});
     const float angle = document.number(transform, "rotation", 0), c = std::cos(angle), s = std::sin(angle);
     const glm::mat3 turned(c, -s, 0, s, c, 0, 0, 0, 1);
-    const glm::mat3 scaled(scale.x, 0, 0, 0, scale.y, 0, 0, 0, 1), moved(1, 0, 0, 0, 1, 0, offset.x, offset.y, 1);
+    const glm::mat3 scaled(scale.x, 0, 0, 0, scale.y, 0, 0, 0, 1),
+        moved(1, 0, 0, 0, 1, 0, offset.x, offset.y, 1);
     const glm::mat3 flipped(1, 0, 0, 0, -1, 0, 0, 1, 1);
     return glm::mat3x2(flipped * moved * turned * scaled * flipped);
 }
@@ -85,8 +89,8 @@ private:
         material.unlit = true;
         material.metal_rough = false;
         material.emission = glm::vec3(0);
-        for (Texture* texture : {&material.emission_texture, &material.normal_texture, &material.metal_roughness_texture,
-                                 &material.occlusion_texture})
+        for (Texture* texture : {&material.emission_texture, &material.normal_texture,
+                                 &material.metal_roughness_texture, &material.occlusion_texture})
             *texture = {};
     }
 
@@ -119,7 +123,8 @@ private:
         material.specular = color_of(document_, source, "specularFactor", glm::vec3(1));
         const float roughness = 1 - document_.number(source, "glossinessFactor", 1);
         const float alpha = std::max(roughness * roughness, 0.03f);
-        material.shininess = std::max(2 / (alpha * alpha) - 2, 1.0f); // as the shader does for metal and roughness
+        material.shininess =
+            std::max(2 / (alpha * alpha) - 2, 1.0f); // as the shader does for metal and roughness
         lose_texture(source, "specularGlossinessTexture");
     }
 
@@ -180,7 +185,8 @@ private:
         if (const auto source = document_.find_index(texture, "source")) return source;
         if (const Json* webp = GltfDocument::extension(texture, "EXT_texture_webp"))
             return document_.find_index(*webp, "source");
-        static const LossKind kind{"texture has no picture that postfx reads", "textures have no pictures that postfx reads"};
+        static const LossKind kind{"texture has no picture that postfx reads",
+                                   "textures have no pictures that postfx reads"};
         losses_.add(kind, texture.value("name", ""));
         return std::nullopt;
     }
@@ -193,7 +199,8 @@ private:
 
     void lose_texture(const Json& owner, const char* key) {
         if (!owner.contains(key)) return;
-        static const LossKind kind{"texture of the specular colour is left out", "textures of the specular colour are left out"};
+        static const LossKind kind{"texture of the specular colour is left out",
+                                   "textures of the specular colour are left out"};
         losses_.add(kind, result_.material.name);
     }
 

@@ -15,8 +15,10 @@ using Json = GltfDocument::Json;
 /// A primitive's attributes, compressed or not.
 class Attributes {
 public:
-    Attributes(const GltfDocument& document, const Json& primitive) : document_(document), primitive_(primitive) {
-        if (!primitive.is_object() || !primitive.contains("attributes") || !primitive.at("attributes").is_object())
+    Attributes(const GltfDocument& document, const Json& primitive)
+        : document_(document), primitive_(primitive) {
+        if (!primitive.is_object() || !primitive.contains("attributes")
+            || !primitive.at("attributes").is_object())
             document.fail("a primitive has no attributes");
         if (const Json* draco = GltfDocument::extension(primitive, "KHR_draco_mesh_compression"))
             draco_ = read_draco(document, *draco);
@@ -30,7 +32,8 @@ public:
     std::vector<float> numbers(const std::string& name, std::size_t width) const {
         if (const auto found = decompressed(name)) {
             if (found->width != width)
-                document_.fail(fmt::format("{} has {} numbers to a vertex, expected {}", name, found->width, width));
+                document_.fail(
+                    fmt::format("{} has {} numbers to a vertex, expected {}", name, found->width, width));
             return found->values;
         }
         return read_numbers(document_, accessor(name), width);
@@ -45,7 +48,8 @@ public:
     /// Of points as they come, without an index list, so many.
     std::vector<std::uint32_t> indices(std::size_t vertices) const {
         if (draco_) return draco_->indices;
-        if (const auto list = document_.find_index(primitive_, "indices")) return read_integers(document_, *list, 1);
+        if (const auto list = document_.find_index(primitive_, "indices"))
+            return read_integers(document_, *list, 1);
         std::vector<std::uint32_t> result(vertices);
         std::iota(result.begin(), result.end(), 0u);
         return result;
@@ -82,7 +86,8 @@ std::vector<std::uint32_t> triangles_of(std::size_t mode, std::vector<std::uint3
     return result;
 }
 
-void check_count(const GltfDocument& document, const std::string& name, std::size_t count, std::size_t expected) {
+void check_count(const GltfDocument& document, const std::string& name, std::size_t count,
+                 std::size_t expected) {
     if (count != expected)
         document.fail(fmt::format("{} is there for {} vertices, and POSITION for {}", name, count, expected));
 }
@@ -138,7 +143,8 @@ std::vector<glm::vec3> read_vectors(const GltfDocument& document, std::size_t ac
     return result;
 }
 
-void read_shapes(const GltfDocument& document, const Json& primitive, std::size_t count, Deformation& deformation) {
+void read_shapes(const GltfDocument& document, const Json& primitive, std::size_t count,
+                 Deformation& deformation) {
     const auto targets = primitive.find("targets");
     if (targets == primitive.end()) return;
     for (const Json& target : *targets) {
@@ -182,9 +188,10 @@ void read_joints(const GltfDocument& document, const Attributes& attributes, std
 
 } // namespace
 
-Mesh read_gltf_primitive(const GltfDocument& document, const Json& primitive, const std::vector<std::size_t>& uv_sets,
-                         Losses& losses) {
-    static const LossKind thin{"primitive of points or lines is left out", "primitives of points or lines are left out"};
+Mesh read_gltf_primitive(const GltfDocument& document, const Json& primitive,
+                         const std::vector<std::size_t>& uv_sets, Losses& losses) {
+    static const LossKind thin{"primitive of points or lines is left out",
+                               "primitives of points or lines are left out"};
     Mesh mesh;
     const Attributes attributes(document, primitive);
     const std::size_t mode = document.find_index(primitive, "mode").value_or(4);
@@ -207,7 +214,8 @@ Mesh read_gltf_primitive(const GltfDocument& document, const Json& primitive, co
     auto deformation = std::make_shared<Deformation>();
     read_shapes(document, primitive, count, *deformation);
     read_joints(document, attributes, count, *deformation);
-    if (!deformation->shapes.empty() || deformation->influences > 0) mesh.deformation = std::move(deformation);
+    if (!deformation->shapes.empty() || deformation->influences > 0)
+        mesh.deformation = std::move(deformation);
     mesh.indices = triangles_of(mode, attributes.indices(count));
     drop_broken_triangles(mesh, "", losses);
     if (!has_normals) make_flat(mesh);

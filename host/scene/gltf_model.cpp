@@ -60,7 +60,8 @@ private:
         parent_.assign(count, none);
         for (std::size_t node = 0; node < count; ++node) {
             for (const std::size_t child : children_of(node)) {
-                if (parent_[child] != none) document_.fail(fmt::format("nodes[{}] has two parents, expected a tree", child));
+                if (parent_[child] != none)
+                    document_.fail(fmt::format("nodes[{}] has two parents, expected a tree", child));
                 parent_[child] = node;
             }
         }
@@ -82,8 +83,10 @@ private:
         const std::size_t scenes = document_.count("scenes");
         shown_.assign(order_.size(), scenes == 0);
         if (scenes == 0) return;
-        static const LossKind kind{"other scene of the file is left out", "other scenes of the file are left out"};
-        const Json& scene = document_.item("scenes", document_.find_index(document_.json(), "scene").value_or(0));
+        static const LossKind kind{"other scene of the file is left out",
+                                   "other scenes of the file are left out"};
+        const Json& scene =
+            document_.item("scenes", document_.find_index(document_.json(), "scene").value_or(0));
         losses_.add(kind, "", scenes - 1);
         if (const auto roots = scene.find("nodes"); roots != scene.end()) {
             for (const Json& root : *roots) {
@@ -103,7 +106,8 @@ private:
         node.name = source.value("name", "");
         if (parent_[index] != none) node.parent = place_of_[parent_[index]];
         at_rest_.push_back(read_placement(source, node.local));
-        if (const auto mesh = document_.find_index(source, "mesh"); mesh && shown_[index]) add_mesh(source, *mesh, node);
+        if (const auto mesh = document_.find_index(source, "mesh"); mesh && shown_[index])
+            add_mesh(source, *mesh, node);
         if (shown_[index]) add_light_and_camera(source, node.name);
         model_.nodes.push_back(std::move(node));
     }
@@ -120,8 +124,8 @@ private:
         vector("translation", keys.translation);
         vector("scale", keys.scale);
         if (const auto q = document_.numbers(source, "rotation", 4)) {
-            const glm::dquat turn(static_cast<double>((*q)[3]), static_cast<double>((*q)[0]), static_cast<double>((*q)[1]),
-                                  static_cast<double>((*q)[2]));
+            const glm::dquat turn(static_cast<double>((*q)[3]), static_cast<double>((*q)[0]),
+                                  static_cast<double>((*q)[1]), static_cast<double>((*q)[2]));
             if (glm::length(turn) > 0) keys.rotation = glm::normalize(turn);
         }
         local = keys.local(0);
@@ -150,7 +154,8 @@ private:
         for (const Json& primitive : source.at("primitives")) {
             const std::size_t material = material_of(document_.find_index(primitive, "material"));
             Mesh made = read_gltf_primitive(document_, primitive, uv_sets_[material], losses_);
-            if (!made.empty()) known->second.push_back({std::make_shared<const Mesh>(std::move(made)), material});
+            if (!made.empty())
+                known->second.push_back({std::make_shared<const Mesh>(std::move(made)), material});
         }
         return known->second;
     }
@@ -193,7 +198,8 @@ private:
         skin.mesh_to_joint.assign(skin.joints.size(), glm::dmat4(1));
         if (const auto matrices = document_.find_index(source, "inverseBindMatrices")) {
             const std::vector<float> values = read_numbers(document_, *matrices, 16);
-            if (values.size() < 16 * skin.joints.size()) document_.fail("a skin has fewer matrices than joints");
+            if (values.size() < 16 * skin.joints.size())
+                document_.fail("a skin has fewer matrices than joints");
             for (std::size_t i = 0; i < skin.joints.size(); ++i)
                 skin.mesh_to_joint[i] = matrix_of(values, 16 * i);
         }
@@ -208,7 +214,8 @@ private:
                 if (!part.mesh->deformation) continue;
                 for (const std::uint32_t joint : part.mesh->deformation->joints) {
                     if (joint >= joints)
-                        document_.fail(fmt::format("a vertex has the joint {}, and its skin has {} joints", joint, joints));
+                        document_.fail(fmt::format("a vertex has the joint {}, and its skin has {} joints",
+                                                   joint, joints));
                 }
             }
         }
@@ -246,7 +253,8 @@ std::optional<Light> read_gltf_light(const GltfDocument& document, std::size_t i
         light.inner_angle = glm::degrees(document.number(spot, "innerConeAngle", 0));
         light.outer_angle = glm::degrees(document.number(spot, "outerConeAngle", glm::radians(45.0f)));
     } else if (type != "point") {
-        static const LossKind kind{"light is of a kind that postfx doesn't know", "lights are of kinds that postfx doesn't know"};
+        static const LossKind kind{"light is of a kind that postfx doesn't know",
+                                   "lights are of kinds that postfx doesn't know"};
         losses.add(kind, type);
         return std::nullopt;
     }
@@ -267,7 +275,8 @@ NamedCamera read_gltf_camera(const GltfDocument& document, std::size_t index) {
     camera.look_at = {0, 0, -1};
     const std::string type = source.value("type", "");
     if (type != "perspective" && type != "orthographic")
-        document.fail(fmt::format("cameras[{}] is \"{}\", expected \"perspective\" or \"orthographic\"", index, type));
+        document.fail(
+            fmt::format("cameras[{}] is \"{}\", expected \"perspective\" or \"orthographic\"", index, type));
     if (!source.contains(type)) document.fail(fmt::format("cameras[{}] has no \"{}\"", index, type));
     const Json& lens = source.at(type);
     camera.near_plane = static_cast<double>(document.number(lens, "znear", 0.1f));

@@ -14,7 +14,8 @@ glm::dquat quaternion(const std::vector<float>& v) {
 }
 
 /// Between two keys, each `step` numbers from the other.
-void interpolate(const Track& track, std::size_t key, double seconds, double share, std::vector<float>& value) {
+void interpolate(const Track& track, std::size_t key, double seconds, double share,
+                 std::vector<float>& value) {
     const std::size_t width = track.width;
     const bool cubic = track.interpolation == Track::Interpolation::cubic;
     const float* a = &track.values[key * width * (cubic ? 3 : 1)];
@@ -45,8 +46,7 @@ std::vector<float> Track::at(double time, bool rotation) const {
     const auto after = static_cast<std::size_t>(above - times.begin());
     const std::size_t key = after == 0 ? 0 : after - 1;
     const bool cubic = interpolation == Interpolation::cubic;
-    const auto first = values.begin()
-                       + static_cast<std::ptrdiff_t>(width * (cubic ? 3 * key + 1 : key));
+    const auto first = values.begin() + static_cast<std::ptrdiff_t>(width * (cubic ? 3 * key + 1 : key));
     std::vector<float> value(first, first + width);
     if (after == 0 || after == times.size() || interpolation == Interpolation::step) return value;
     const double begin = static_cast<double>(times[key]), seconds = static_cast<double>(times[after]) - begin;

@@ -21,9 +21,9 @@ std::vector<std::string> Losses::lines() const {
     std::vector<std::string> result;
     for (const Loss& loss : losses_) {
         result.push_back(fmt::format("{} {}{}", loss.count, loss.count == 1 ? loss.kind.one : loss.kind.many,
-                                     loss.first.empty()   ? std::string()
-                                     : loss.count == 1    ? fmt::format(" ({})", loss.first)
-                                                          : fmt::format(" (first: {})", loss.first)));
+                                     loss.first.empty() ? std::string()
+                                     : loss.count == 1  ? fmt::format(" ({})", loss.first)
+                                                        : fmt::format(" (first: {})", loss.first)));
     }
     return result;
 }

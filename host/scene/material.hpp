@@ -36,7 +36,7 @@ struct Sampler {
 struct Texture {
     PicturePtr picture; ///< null: there is none, which counts as white
     Sampler sampler;
-    std::uint32_t uv_set = 0;           ///< 0 or 1: Vertex::uv or VertexExtra::uv
+    std::uint32_t uv_set = 0;            ///< 0 or 1: Vertex::uv or VertexExtra::uv
     glm::mat3x2 placement{glm::mat3(1)}; ///< (u, v, 1) of the vertices to those of the picture, v upwards
 
     Texture() = default;

@@ -67,7 +67,9 @@ void drop_broken_triangles(Mesh& mesh, const std::string& what, Losses& losses) 
     for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
         repair(mesh.vertices[v]);
         // No triangle has it any more, but boxes are made around all vertices.
-        if (!is_usable(mesh, v)) mesh.vertices[v].position = mesh.indices.empty() ? glm::vec3(0) : mesh.vertices[mesh.indices[0]].position;
+        if (!is_usable(mesh, v))
+            mesh.vertices[v].position =
+                mesh.indices.empty() ? glm::vec3(0) : mesh.vertices[mesh.indices[0]].position;
     }
     for (VertexExtra& extra : mesh.extras) {
         if (!std::isfinite(extra.uv.x + extra.uv.y)) extra.uv = glm::vec2(0);
@@ -91,7 +93,8 @@ void make_flat(Mesh& mesh) {
     for (std::size_t i = 0; i < mesh.indices.size(); ++i)
         mesh.indices[i] = static_cast<std::uint32_t>(i);
     for (std::size_t i = 0; i + 2 < mesh.vertices.size(); i += 3) {
-        const glm::dvec3 a(mesh.vertices[i].position), b(mesh.vertices[i + 1].position), c(mesh.vertices[i + 2].position);
+        const glm::dvec3 a(mesh.vertices[i].position), b(mesh.vertices[i + 1].position),
+            c(mesh.vertices[i + 2].position);
         const glm::dvec3 normal = glm::cross(b - a, c - a);
         const double length = glm::length(normal);
         for (std::size_t corner = i; corner < i + 3; ++corner)

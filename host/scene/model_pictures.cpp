@@ -39,7 +39,8 @@ public:
 
 private:
     std::size_t pixel(int x, int y) const {
-        return static_cast<std::size_t>(y) * static_cast<std::size_t>(picture_.width) + static_cast<std::size_t>(x);
+        return static_cast<std::size_t>(y) * static_cast<std::size_t>(picture_.width)
+               + static_cast<std::size_t>(x);
     }
     const Picture& picture_;
     std::size_t channel_; ///< alpha, or green of a grey picture
@@ -47,7 +48,8 @@ private:
 
 } // namespace
 
-std::uint32_t pick_uv_set(std::size_t set, std::vector<std::size_t>& sets, const std::string& material, Losses& losses) {
+std::uint32_t pick_uv_set(std::size_t set, std::vector<std::size_t>& sets, const std::string& material,
+                          Losses& losses) {
     static const LossKind kind{
         "texture is read with the coordinates of another, since a material has at most 2 sets",
         "textures are read with the coordinates of others, since a material has at most 2 sets"};
@@ -90,7 +92,8 @@ PicturePtr ModelPictures::file(const std::string& name, bool srgb) {
     return known->second;
 }
 
-PicturePtr ModelPictures::embedded(const std::string& name, const std::vector<std::uint8_t>& bytes, bool srgb) {
+PicturePtr ModelPictures::embedded(const std::string& name, const std::vector<std::uint8_t>& bytes,
+                                   bool srgb) {
     const auto [known, added] = known_.try_emplace({name, srgb});
     if (!added) return known->second;
     if (const PicturePtr picture = decode(name, bytes, srgb)) known->second = hooks_.picture(picture);

@@ -15,7 +15,8 @@ namespace postfx::host {
 
 /// Which of a vertex's two pairs of texture coordinates stands for the file's set of that number: its place in `sets`,
 /// which are those that the material has so far. A third one is a loss.
-std::uint32_t pick_uv_set(std::size_t set, std::vector<std::size_t>& sets, const std::string& material, Losses& losses);
+std::uint32_t pick_uv_set(std::size_t set, std::vector<std::size_t>& sets, const std::string& material,
+                          Losses& losses);
 
 class ModelPictures {
 public:

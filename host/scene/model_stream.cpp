@@ -35,7 +35,8 @@ public:
     /// The index of something that is shared, and whether it follows.
     template<class T>
     bool shared(const std::shared_ptr<const T>& value, std::uint32_t& index) {
-        const auto [known, added] = shared_.try_emplace(value.get(), static_cast<std::uint32_t>(shared_.size()));
+        const auto [known, added] =
+            shared_.try_emplace(value.get(), static_cast<std::uint32_t>(shared_.size()));
         index = known->second;
         bytes(&index, sizeof index);
         return added;
@@ -51,7 +52,8 @@ class Input {
 public:
     static constexpr bool reads = true;
 
-    Input(const std::function<void(void*, std::size_t)>& source, std::size_t limit) : source_(source), left_(limit) {}
+    Input(const std::function<void(void*, std::size_t)>& source, std::size_t limit)
+        : source_(source), left_(limit) {}
 
     void bytes(void* data, std::size_t size) {
         if (size > left_) throw std::bad_alloc();
@@ -75,9 +77,10 @@ private:
 
 /// What is written and read as it lies in memory.
 template<class T>
-concept Plain = std::is_arithmetic_v<T> || std::is_same_v<T, glm::vec2> || std::is_same_v<T, glm::vec3>
-                || std::is_same_v<T, glm::dvec3> || std::is_same_v<T, glm::dquat> || std::is_same_v<T, glm::dmat4>
-                || std::is_same_v<T, glm::mat3x2> || std::is_same_v<T, Vertex> || std::is_same_v<T, VertexExtra>;
+concept Plain =
+    std::is_arithmetic_v<T> || std::is_same_v<T, glm::vec2> || std::is_same_v<T, glm::vec3> || std::is_same_v<
+        T, glm::dvec3> || std::is_same_v<T, glm::dquat> || std::is_same_v<T, glm::dmat4> || std::
+        is_same_v<T, glm::mat3x2> || std::is_same_v<T, Vertex> || std::is_same_v<T, VertexExtra>;
 
 // One description of every type serves both ways: exchange(archive, value) writes the value or reads it.
 
@@ -165,13 +168,13 @@ void exchange(A& archive, Material& m) {
     exchange(archive, m.name);
     for (glm::vec3* color : {&m.diffuse, &m.specular, &m.emission})
         exchange(archive, *color);
-    for (float* number : {&m.shininess, &m.opacity, &m.alpha_cutoff, &m.metalness, &m.roughness, &m.normal_scale,
-                          &m.occlusion_strength})
+    for (float* number : {&m.shininess, &m.opacity, &m.alpha_cutoff, &m.metalness, &m.roughness,
+                          &m.normal_scale, &m.occlusion_strength})
         exchange(archive, *number);
     for (bool* flag : {&m.two_sided, &m.blended, &m.unlit, &m.metal_rough})
         exchange(archive, *flag);
-    for (Texture* texture : {&m.diffuse_texture, &m.emission_texture, &m.normal_texture, &m.metal_roughness_texture,
-                             &m.occlusion_texture})
+    for (Texture* texture : {&m.diffuse_texture, &m.emission_texture, &m.normal_texture,
+                             &m.metal_roughness_texture, &m.occlusion_texture})
         exchange(archive, *texture);
 }
 
@@ -239,7 +242,8 @@ void exchange(A& archive, NodeKeys& keys) {
     exchange(archive, keys.translation);
     exchange(archive, keys.rotation);
     exchange(archive, keys.scale);
-    for (std::optional<Track>* track : {&keys.translations, &keys.rotations, &keys.scales, &keys.shape_weights})
+    for (std::optional<Track>* track :
+         {&keys.translations, &keys.rotations, &keys.scales, &keys.shape_weights})
         exchange(archive, *track);
     exchange(archive, keys.duration);
 }
@@ -312,7 +316,8 @@ void check(const Track& track, std::size_t width) {
 
 void check(const Mesh& mesh) {
     const std::size_t count = mesh.vertices.size();
-    require(std::all_of(mesh.indices.begin(), mesh.indices.end(), [&](std::uint32_t i) { return i < count; }));
+    require(
+        std::all_of(mesh.indices.begin(), mesh.indices.end(), [&](std::uint32_t i) { return i < count; }));
     require(mesh.extras.empty() || mesh.extras.size() == count);
     if (!mesh.deformation) return;
     const Deformation& deformation = *mesh.deformation;
@@ -340,7 +345,8 @@ void check(const Model& model) {
             if (!part.mesh->deformation || !node.skin) continue;
             const auto& joints = part.mesh->deformation->joints;
             const std::size_t count = model.skins[*node.skin].joints.size();
-            require(std::all_of(joints.begin(), joints.end(), [&](std::uint32_t joint) { return joint < count; }));
+            require(std::all_of(joints.begin(), joints.end(),
+                                [&](std::uint32_t joint) { return joint < count; }));
         }
     }
     for (const Skin& skin : model.skins) {
@@ -349,14 +355,16 @@ void check(const Model& model) {
             require(joint < model.nodes.size());
     }
     for (const Material& material : model.materials) {
-        for (const Texture* texture : {&material.diffuse_texture, &material.emission_texture, &material.normal_texture,
-                                       &material.metal_roughness_texture, &material.occlusion_texture})
+        for (const Texture* texture :
+             {&material.diffuse_texture, &material.emission_texture, &material.normal_texture,
+              &material.metal_roughness_texture, &material.occlusion_texture})
             require(texture->uv_set < 2);
     }
     for (const Light& light : model.lights)
         require(light.node < model.nodes.size());
     for (const NamedCamera& camera : model.cameras)
-        require(!camera.names.empty() && (!camera.camera.parent || *camera.camera.parent < model.nodes.size()));
+        require(!camera.names.empty()
+                && (!camera.camera.parent || *camera.camera.parent < model.nodes.size()));
 }
 
 template<class A>
@@ -377,7 +385,9 @@ PicturePtr read_picture(Input& input) {
     auto picture = std::make_shared<Picture>();
     exchange(input, *picture);
     require(picture->width > 0 && picture->height > 0
-            && picture->rgba.size() == 4 * static_cast<std::size_t>(picture->width) * static_cast<std::size_t>(picture->height));
+            && picture->rgba.size()
+                   == 4 * static_cast<std::size_t>(picture->width)
+                          * static_cast<std::size_t>(picture->height));
     return picture;
 }
 
@@ -420,7 +430,9 @@ Model read_model_stream(const std::function<void(void*, std::size_t)>& source, s
     Input input(source, limit);
     for (;;) {
         switch (read_tag(input)) {
-        case Tag::picture: input.pictures.push_back(read_picture(input)); break;
+        case Tag::picture:
+            input.pictures.push_back(read_picture(input));
+            break;
         case Tag::model: {
             Model model;
             exchange(input, model);
@@ -435,8 +447,10 @@ Model read_model_stream(const std::function<void(void*, std::size_t)>& source, s
             exchange_error(input, place, message);
             throw Error(place, message);
         }
-        case Tag::out_of_memory: throw std::bad_alloc();
-        default: fail();
+        case Tag::out_of_memory:
+            throw std::bad_alloc();
+        default:
+            fail();
         }
     }
 }

@@ -71,7 +71,8 @@ constexpr double usual_reflectance = 0.25;
 
 /// Of a surface whose metalness no texture says: metal reflects nothing diffusely.
 double metal_share(const Material& material) {
-    return material.metal_rough && !material.metal_roughness_texture ? static_cast<double>(material.metalness) : 0;
+    return material.metal_rough && !material.metal_roughness_texture ? static_cast<double>(material.metalness)
+                                                                     : 0;
 }
 
 /// Share of white light that the model's surface reflects, 0..1. Textures count as the usual.
@@ -106,8 +107,9 @@ double fitting_distance(const Bounds& bounds, glm::dvec3 from, double vertical_f
 void limit_lights(Scene& scene) {
     std::size_t shadows = 0;
     if (scene.lights.size() > max_lights) {
-        scene.losses.push_back(fmt::format("{}: {} lights are left out, for a scene has at most {}", scene.file.string(),
-                                           scene.lights.size() - max_lights, max_lights));
+        scene.losses.push_back(fmt::format("{}: {} lights are left out, for a scene has at most {}",
+                                           scene.file.string(), scene.lights.size() - max_lights,
+                                           max_lights));
         scene.lights.resize(max_lights);
     }
     for (Light& light : scene.lights)
@@ -193,7 +195,8 @@ Scene read_scene_or_model(const std::filesystem::path& file, const ModelSource& 
         scene.content = std::move(content);
         return scene;
     }
-    Scene scene = content.empty() ? read_scene(file, read_model) : parse_scene(content, input_name(file), read_model);
+    Scene scene =
+        content.empty() ? read_scene(file, read_model) : parse_scene(content, input_name(file), read_model);
     scene.content = std::move(content);
     return scene;
 }

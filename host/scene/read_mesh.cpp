@@ -273,8 +273,9 @@ const Model& find_model(const YamlValue& name, Scene& scene, Library& library) {
     for (const std::string& loss : model.losses)
         scene.losses.push_back(fmt::format("{}: {}", file.string(), loss));
     if (!model.lights.empty()) {
-        scene.losses.push_back(fmt::format("{}: {} of its lights left out, for a scene file has its own", file.string(),
-                                           model.lights.size() == 1 ? "1 is" : fmt::format("{} are", model.lights.size())));
+        scene.losses.push_back(
+            fmt::format("{}: {} of its lights left out, for a scene file has its own", file.string(),
+                        model.lights.size() == 1 ? "1 is" : fmt::format("{} are", model.lights.size())));
         model.lights.clear();
     }
     return model;
@@ -334,8 +335,8 @@ std::vector<Part> read_mesh(const YamlValue& mesh, const std::optional<YamlValue
     return {};
 }
 
-void place_model(const YamlValue& mesh, const std::optional<YamlValue>& material, std::size_t node, Scene& scene,
-                 Library& library) {
+void place_model(const YamlValue& mesh, const std::optional<YamlValue>& material, std::size_t node,
+                 Scene& scene, Library& library) {
     const auto entries = mesh.entries();
     if (entries.front().first.text() != "model") return;
     const Model& model = find_model(entries.front().second, scene, library);

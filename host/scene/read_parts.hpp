@@ -45,7 +45,7 @@ std::vector<Part> read_mesh(const YamlValue& mesh, const std::optional<YamlValue
                             const std::optional<YamlValue>& slots, Scene& scene, Library& library);
 /// If `mesh:` is a model: put its nodes below `node`, with its own materials or with that one. A scene file has lights of
 /// its own: the model's are a loss.
-void place_model(const YamlValue& mesh, const std::optional<YamlValue>& material, std::size_t node, Scene& scene,
-                 Library& library);
+void place_model(const YamlValue& mesh, const std::optional<YamlValue>& material, std::size_t node,
+                 Scene& scene, Library& library);
 
 } // namespace postfx::host

@@ -176,7 +176,8 @@ private:
             }
         }
         scene_.nodes.push_back(std::move(node));
-        if (const auto mesh = map.find("mesh")) place_model(*mesh, map.find("material"), index, scene_, library_);
+        if (const auto mesh = map.find("mesh"))
+            place_model(*mesh, map.find("material"), index, scene_, library_);
         if (const auto value_of_light = map.find("light")) {
             Light light = read_light(*value_of_light);
             light.node = index;
@@ -256,7 +257,8 @@ private:
 
 } // namespace
 
-Scene parse_scene(const std::string& yaml, const std::filesystem::path& origin, const ModelSource& read_model) {
+Scene parse_scene(const std::string& yaml, const std::filesystem::path& origin,
+                  const ModelSource& read_model) {
     return SceneReader(read_model).read(read_document(yaml, origin, {}), origin);
 }
 

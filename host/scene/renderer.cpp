@@ -176,10 +176,10 @@ void SceneRenderer::State::add_lights(ViewBlock& view) const {
         const glm::dmat4& place = nodes[light.node];
         const float outer = std::cos(glm::radians(light.outer_angle)),
                     inner = std::cos(glm::radians(light.inner_angle));
-        view.lights[i] = {
-            glm::vec4(glm::vec3(glm::dvec3(place[3]) - eye()), 1),
-            glm::vec4(glm::vec3(glm::normalize(glm::dvec3(-place[2]))), outer),
-            glm::vec4(light.color, 1 / std::max(inner - outer, 1e-4f)), glm::vec4(light.attenuation, light.range)};
+        view.lights[i] = {glm::vec4(glm::vec3(glm::dvec3(place[3]) - eye()), 1),
+                          glm::vec4(glm::vec3(glm::normalize(glm::dvec3(-place[2]))), outer),
+                          glm::vec4(light.color, 1 / std::max(inner - outer, 1e-4f)),
+                          glm::vec4(light.attenuation, light.range)};
     }
     shadows.describe(view, eye());
 }

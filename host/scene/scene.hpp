@@ -51,7 +51,8 @@ struct Node {
     std::optional<std::size_t> parent; ///< always an earlier node
     glm::dmat4 local{1};
     Animation animation;
-    std::shared_ptr<const NodeKeys> keys; ///< of a model's own animation; where there are any, they replace local
+    std::shared_ptr<const NodeKeys>
+        keys; ///< of a model's own animation; where there are any, they replace local
     std::vector<Part> parts;
     std::optional<std::size_t> skin;  ///< of the parts that have joints; index into Scene::skins
     std::vector<float> shape_weights; ///< of the parts' shapes, unless keys say otherwise

@@ -20,8 +20,8 @@ gl::Handle<gl::destroy_texture> upload(const Picture& picture) {
     GLint limit = 0;
     glGetIntegerv(GL_MAX_TEXTURE_SIZE, &limit);
     if (std::max(picture.width, picture.height) > limit) {
-        throw Error(fmt::format("a texture has {}x{} pixels, this device has at most {} to a side", picture.width,
-                                picture.height, limit));
+        throw Error(fmt::format("a texture has {}x{} pixels, this device has at most {} to a side",
+                                picture.width, picture.height, limit));
     }
     const auto largest = static_cast<unsigned>(std::max(picture.width, picture.height));
     glTextureStorage2D(name, static_cast<GLsizei>(std::bit_width(largest)),
@@ -35,9 +35,12 @@ gl::Handle<gl::destroy_texture> upload(const Picture& picture) {
 
 GLint wrap_of(Sampler::Wrap wrap) {
     switch (wrap) {
-    case Sampler::Wrap::clamp: return GL_CLAMP_TO_EDGE;
-    case Sampler::Wrap::mirror: return GL_MIRRORED_REPEAT;
-    case Sampler::Wrap::repeat: break;
+    case Sampler::Wrap::clamp:
+        return GL_CLAMP_TO_EDGE;
+    case Sampler::Wrap::mirror:
+        return GL_MIRRORED_REPEAT;
+    case Sampler::Wrap::repeat:
+        break;
     }
     return GL_REPEAT;
 }
@@ -45,9 +48,12 @@ GLint wrap_of(Sampler::Wrap wrap) {
 GLint minify_of(const Sampler& sampler) {
     const bool linear = sampler.minify == Sampler::Filter::linear;
     switch (sampler.mips) {
-    case Sampler::Mips::none: return linear ? GL_LINEAR : GL_NEAREST;
-    case Sampler::Mips::nearest: return linear ? GL_LINEAR_MIPMAP_NEAREST : GL_NEAREST_MIPMAP_NEAREST;
-    case Sampler::Mips::linear: break;
+    case Sampler::Mips::none:
+        return linear ? GL_LINEAR : GL_NEAREST;
+    case Sampler::Mips::nearest:
+        return linear ? GL_LINEAR_MIPMAP_NEAREST : GL_NEAREST_MIPMAP_NEAREST;
+    case Sampler::Mips::linear:
+        break;
     }
     return linear ? GL_LINEAR_MIPMAP_LINEAR : GL_NEAREST_MIPMAP_LINEAR;
 }
@@ -83,7 +89,7 @@ MaterialBlock block_of(const Material& material) {
         const auto second = static_cast<float>(textures[i]->uv_set);
         for (int row = 0; row < 2; ++row) {
             block.uv_rows[2 * i + static_cast<std::size_t>(row)] = {placement[0][row], placement[1][row],
-                                                                     placement[2][row], second};
+                                                                    placement[2][row], second};
         }
     }
     return block;
@@ -172,9 +178,10 @@ void SceneBuffers::deform(const Scene& scene, const std::vector<glm::dmat4>& nod
         part.bounds = {};
         for (const Vertex& vertex : deformed_)
             part.bounds.add(glm::dvec3(vertex.position));
-        glNamedBufferSubData(vertices_.name(),
-                             static_cast<GLintptr>(static_cast<std::size_t>(part.base_vertex) * sizeof(Vertex)),
-                             static_cast<GLsizeiptr>(deformed_.size() * sizeof(Vertex)), deformed_.data());
+        glNamedBufferSubData(
+            vertices_.name(),
+            static_cast<GLintptr>(static_cast<std::size_t>(part.base_vertex) * sizeof(Vertex)),
+            static_cast<GLsizeiptr>(deformed_.size() * sizeof(Vertex)), deformed_.data());
     }
 }
 

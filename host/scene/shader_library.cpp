@@ -97,8 +97,9 @@ std::string light_calls(const std::vector<LightCode>& lights) {
 
 std::string surface_constants(const SurfaceCode& code) {
     const std::pair<const char*, bool> constants[] = {
-        {"PLACED", code.placed},           {"EXTRA", code.extra},       {"NORMAL_MAP", code.normal_map},
-        {"METAL_ROUGH", code.metal_rough}, {"OCCLUDED", code.occluded}, {"CUT", code.cut},
+        {"PLACED", code.placed},         {"EXTRA", code.extra},
+        {"NORMAL_MAP", code.normal_map}, {"METAL_ROUGH", code.metal_rough},
+        {"OCCLUDED", code.occluded},     {"CUT", code.cut},
         {"UNLIT", code.unlit},
     };
     std::string text;

@@ -26,8 +26,8 @@ struct LightCode {
 /// What the shader has to know of a surface beforehand, so that what a surface does not have costs nothing.
 struct SurfaceCode {
     bool textured = false;
-    bool placed = false;     ///< some texture is not read at the vertices' first uv as it is
-    bool extra = false;      ///< its vertices have a second uv and an opacity
+    bool placed = false; ///< some texture is not read at the vertices' first uv as it is
+    bool extra = false;  ///< its vertices have a second uv and an opacity
     bool normal_map = false;
     bool metal_rough = false;
     bool occluded = false; ///< has an occlusion texture

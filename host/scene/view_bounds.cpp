@@ -191,7 +191,8 @@ SceneBounds ViewBounds::at(double time, const Camera& camera, int width, int hei
     bool surfaces = false, emission = false, ambient = false;
     for (PartBox& box : boxes_) {
         if (box.moving) {
-            box.box = box.moving->at(scene_.shape_weights(box.node, time), scene_.joint_matrices(box.node, nodes_));
+            box.box =
+                box.moving->at(scene_.shape_weights(box.node, time), scene_.joint_matrices(box.node, nodes_));
         }
         const glm::dmat4 to_view = world_to_view * nodes_[box.node];
         const Corners corners = corners_of(box.box.low, box.box.high, to_view);

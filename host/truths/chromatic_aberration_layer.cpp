@@ -2,10 +2,10 @@
 // magnification.
 #include "drawn_scene.hpp"
 #include "lens_spectrum.hpp"
-#include <image/rows.hpp>
 #include "sampling.hpp"
 #include "spline_picture.hpp"
 #include "truth.hpp"
+#include <image/rows.hpp>
 
 #include <fmt/format.h>
 

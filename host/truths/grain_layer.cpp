@@ -1,9 +1,9 @@
 // Film grain by its making: layers of discs, seen through the pixels' squares.
 #include "drawn_scene.hpp"
 #include "film.hpp"
-#include <image/rows.hpp>
 #include "sampling.hpp"
 #include "truth.hpp"
+#include <image/rows.hpp>
 
 #include <fmt/format.h>
 

@@ -467,7 +467,7 @@ Image64 classic_glow_of(const ReferenceInput& input) {
 } // namespace
 
 Image64 postfx::testing::reference(const ReferenceInput& input) {
-    const int level = static_cast<int>(input.value("quality"));
+    const int level = input.level_among({"low", "medium", "high", "ultra", "reference", "classic"});
     const Image64 glow = level == classic ? classic_glow_of(input) : glow_of(input, level);
     const double intensity = input.value("radius") > 0 ? input.value("intensity") : 0; // neither: no glow
     Image64 result(glow.width, glow.height, 3);

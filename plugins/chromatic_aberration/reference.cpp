@@ -168,7 +168,7 @@ double focus_value(const ReferenceInput& input, int x, int y) {
 
 Image64 reference(const ReferenceInput& input) {
     const Image64& image = input.color;
-    const int level = static_cast<int>(input.value("quality"));
+    const int level = input.level_among({"classic", "low", "medium", "high", "ultra", "reference"});
     const double strength = input.value("strength");
     const auto index = [](double micrometres) { return std::pow(micrometres, -2); }; // Cauchy, up to a factor
     const double whole = index(0.464) - index(0.612);

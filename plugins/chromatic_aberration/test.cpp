@@ -26,6 +26,10 @@ const double blue_end = red_end + 1;
 const double pi = std::acos(-1.0);
 
 enum Level { classic, low, medium, high, ultra, best };
+std::string_view word_of(Level level) {
+    constexpr std::string_view words[] = {"classic", "low", "medium", "high", "ultra", "reference"};
+    return words[level];
+}
 constexpr Level all_levels[] = {classic, low, medium, high, ultra, best};
 constexpr Level spectra[] = {medium, high, ultra, best}; // the levels that integrate over wavelengths
 

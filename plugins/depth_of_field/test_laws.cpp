@@ -132,7 +132,7 @@ TEST_CASE("constant light stays constant whatever the depth") {
                                            {"f_number", 1},
                                            {"max_circle_of_confusion", 0.1},
                                            {"axial_aberration", axial},
-                                           {"quality", level}};
+                                           {"quality", level_names[level]}};
                     const Worst worst = worst_difference(run_effect("depth_of_field", input, values),
                                                          convert<double>(input.color));
                     INFO(level_names[level] << ", axial " << axial);

@@ -52,7 +52,7 @@ double height_fog_thickness(const ReferenceInput& input, const Ray& ray) {
 } // namespace
 
 Image64 reference(const ReferenceInput& input) {
-    const bool classic = input.value("quality") == 0;
+    const bool classic = input.level == "classic";
     const Image64& depth = input.attachments.at("depth");
     Image64 result(input.color.width, input.color.height, 3);
     for (int y = 0; y < result.height; ++y) {

@@ -225,7 +225,7 @@ double sine_noise(const ReferenceInput& input, int x, int y) {
 
 Image64 reference(const ReferenceInput& input) {
     const int width = input.color.width, height = input.color.height;
-    const int level = static_cast<int>(input.value("quality"));
+    const int level = input.level_among({"classic", "low", "medium", "high", "reference"});
     const double amount = input.value("amount") * std::min(input.value("size") * height, 1.0);
     const double own = std::sqrt(input.value("color"));
     const double joint = (std::sqrt(3 - 2 * input.value("color")) - own) / 3;

@@ -14,7 +14,6 @@ using postfx::testing::ReferenceInput;
 
 namespace {
 
-constexpr double classic = 5; ///< index of that level
 constexpr int slices = 64;
 
 using Vector = std::array<double, 3>;
@@ -204,7 +203,7 @@ Image64 postfx::testing::reference(const ReferenceInput& input) {
         for (int x = 0; x < result.width; ++x) {
             const double occluded =
                 input.value("strength")
-                * (input.value("quality") == classic
+                * (input.level == "classic"
                        ? classic_occlusion(scene, x, y, result.width, result.height, radius)
                        : occlusion(scene, x, y, radius, input.value("falloff")));
             for (int c = 0; c < 3; ++c) {

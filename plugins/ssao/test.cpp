@@ -20,6 +20,10 @@ constexpr float not_a_number = std::numeric_limits<float>::quiet_NaN();
 constexpr double nowhere = std::numeric_limits<double>::infinity();
 
 enum Level { low, medium, high, ultra, best, classic };
+std::string_view word_of(Level level) {
+    constexpr std::string_view words[] = {"low", "medium", "high", "ultra", "reference", "classic"};
+    return words[level];
+}
 constexpr std::array approximations = {low, medium, high, ultra, best};
 
 using Vector = std::array<double, 3>;
@@ -597,7 +601,7 @@ TEST_CASE("without cause the effect does not run, and the picture keeps its bits
     const std::tuple<Input, Values, std::string> cases[] = {
         {input, {{"strength", 0}}, "configuration"},
         {input, {{"radius", 0}}, "configuration"},
-        {input, {{"radius", 0.001}, {"skip", 3}}, "scene"},
+        {input, {{"radius", 0.001}, {"skip", "visible"}}, "scene"},
         {flat, {}, "scene"}};
     for (const auto& [given, values, moment] : cases) {
         const Plan plan = plan_effect("ssao", given, values);

@@ -40,7 +40,7 @@ Image64 reference(const ReferenceInput& input) {
     for (int y = 0; y < height; ++y) {
         for (int x = 0; x < width; ++x) {
             const double across = (2 * x + 1.0 - width) / height, up = (2 * y + 1.0 - height) / height;
-            const double shape = input.value("quality") == 0 ? classic(across, up, input)
+            const double shape = input.level == "classic"    ? classic(across, up, input)
                                  : input.value("model") == 0 ? natural(across, up, input)
                                                              : artistic(across, up, input);
             const double gain = 1 - strength * (1 - shape);

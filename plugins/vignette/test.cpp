@@ -16,7 +16,7 @@ constexpr double ulp = 0x1p-23; // of 1
 constexpr float infinity = std::numeric_limits<float>::infinity();
 const Values natural = {{"model", 0}, {"strength", 1}};
 const Values artistic = {{"model", 1}, {"strength", 1}};
-const Values classic = {{"quality", 0}, {"model", 1}, {"strength", 1}};
+const Values classic = {{"quality", "classic"}, {"model", 1}, {"strength", 1}};
 
 Image gains(int width, int height, const Values& values) {
     return run_effect("vignette", {.color = constant(width, height, {1, 1, 1})}, values);
@@ -28,9 +28,9 @@ Image gains(int width, int height, const Values& values) {
 double gain_tolerance(const Values& values) {
     if (values.contains("quality")) return 16 * ulp;
     const auto softness = values.find("softness");
-    return values.at("model") == 0
+    return values.at("model").number == 0
                ? 4 * ulp
-               : (4 + 4 * 1.5 / (softness == values.end() ? 0.9 : softness->second)) * ulp;
+               : (4 + 4 * 1.5 / (softness == values.end() ? 0.9 : softness->second.number)) * ulp;
 }
 
 } // namespace
@@ -41,7 +41,7 @@ TEST_CASE("the picture is the float64 reference's") {
                             {{"model", 1}},
                             artistic,
                             classic,
-                            {{"quality", 0}, {"strength", 0.3}},
+                            {{"quality", "classic"}, {"strength", 0.3}},
                             {{"model", 1}, {"strength", 1}, {"radius", 0}, {"softness", 0.01}},
                             {{"model", 1}, {"strength", 0.7}, {"roundness", 0}},
                             {{"model", 1}, {"strength", 0.7}, {"roundness", 0.4}, {"radius", 2}}};

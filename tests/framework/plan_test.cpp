@@ -64,6 +64,18 @@ std::string error_of(const Chain& chain, const Facts& facts = facts_of()) {
     return "";
 }
 
+/// Does an effect refuse its values? Mistakes of effects are none.
+bool is_refusal(const Chain& chain) {
+    try {
+        plan_of(chain);
+    } catch (const postfx::Refusal&) {
+        return true;
+    } catch (const postfx::Error&) {
+        return false;
+    }
+    return false;
+}
+
 /// Everything that a plan says, as text.
 std::string text_of(const Plan& plan) {
     std::ostringstream text;
@@ -399,8 +411,10 @@ TEST_CASE("every fault of a plan is one message") {
         {"unknown_identity", "would be skipped for the unknown kind \"roughly\""},
         {"fails_silently", "plan() failed with status 3"},
     };
-    for (const auto& [effect, message] : faults)
+    for (const auto& [effect, message] : faults) {
         CHECK(error_of(chain_of({effect})) == effect + ": " + message);
+        CHECK(is_refusal(chain_of({effect})) == (effect == "refuses"));
+    }
     // These name the author's own file.
     CHECK(error_of(chain_of({"bad_include"}))
           == "frag_coord.glsl: bad_include: can't be included: line 2: uses gl_FragCoord");

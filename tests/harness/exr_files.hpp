@@ -62,17 +62,17 @@ inline Imf::Header header_of(const Box& display, const Box& data) {
 }
 
 /// One part of a file of several; its channels are counted on from those of the parts before.
-struct Part {
+struct ExrPart {
     std::string name, view;
     std::vector<std::string> channels;
 };
 
-inline void write_parts(const std::filesystem::path& file, const std::vector<Part>& parts,
+inline void write_parts(const std::filesystem::path& file, const std::vector<ExrPart>& parts,
                         const Box& window = box(0, 0, 2, 2)) {
     std::vector<Imf::Header> headers;
     std::vector<Planes> planes;
     std::size_t channel = 0;
-    for (const Part& part : parts) {
+    for (const ExrPart& part : parts) {
         headers.push_back(header_of(window, window));
         headers.back().setName(part.name);
         headers.back().setType(Imf::SCANLINEIMAGE);

@@ -196,15 +196,17 @@ TEST_CASE("Depth of another size is brought to the picture's, and a line says so
     }
     test.save("half.pfm", half);
     test.save("twice.pfm", twice);
-    const Image smaller =
-        test.picture(fog, {"--depth", "half.pfm"}, "half.pfm: is 24x16, the picture 48x32: brought");
+    const Image smaller = test.picture(fog, {"--depth", "half.pfm"},
+                                       "half.pfm: the depth is 24x16, the picture 48x32: brought");
     // Nothing tells where the surface ends in a white picture; elsewhere it is even. Half a map's pixel of a slope of
     // 0.3 m a pixel is not extrapolated beyond the border.
     for (const auto& [x, y] : {std::pair{5, 5}, std::pair{20, 25}, std::pair{40, 10}, std::pair{44, 28}})
         CHECK(smaller.at(x, y, 0) == Approx(expected.at(x, y, 0)).margin(0.02));
     CHECK(smaller.at(44, 28, 0) == 1.0f);
-    CHECK(test.picture(fog, {"--depth", "twice.pfm"}, "twice.pfm: is 96x64, the picture 48x32: each").values
-          == expected.values);
+    CHECK(
+        test.picture(fog, {"--depth", "twice.pfm"}, "twice.pfm: the depth is 96x64, the picture 48x32: each")
+            .values
+        == expected.values);
     check_refused(test.run(fog, {"--depth", "half.pfm", "--strict"}), "--strict");
     test.save("wide.pfm", Image(40, 20, 1, 1.0f));
     check_refused(test.run(fog, {"--depth", "wide.pfm"}), "wide.pfm: is 40x20, which is not the shape");

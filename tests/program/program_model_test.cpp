@@ -15,9 +15,10 @@ using Json = GltfFile::Json;
 
 namespace {
 
-Outcome render(const std::filesystem::path& folder, const std::string& model, std::vector<std::string> more = {}) {
-    std::vector<std::string> words = {"render", model,    "-q",     "--no-times", "--chain",   "none",
-                                      "--size", "32x32", "--samples", "1",     "-o",         "out.pfm"};
+Outcome render(const std::filesystem::path& folder, const std::string& model,
+               std::vector<std::string> more = {}) {
+    std::vector<std::string> words = {"render", model,   "-q",        "--no-times", "--chain", "none",
+                                      "--size", "32x32", "--samples", "1",          "-o",      "out.pfm"};
     words.insert(words.end(), more.begin(), more.end());
     return run_program(words, folder);
 }
@@ -27,8 +28,10 @@ void write_quad(const std::filesystem::path& file) {
     for (const char* name : {"x.png", "y.png"})
         gltf.add_texture(name);
     for (int i = 0; i < 2; ++i)
-        gltf.add_node({{"mesh", gltf.add_quad({{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", i}}}}}})}});
-    gltf.add("cameras", {{"type", "perspective"}, {"name", "close"}, {"perspective", {{"yfov", 0.5}, {"znear", 0.1}}}});
+        gltf.add_node(
+            {{"mesh", gltf.add_quad({{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", i}}}}}})}});
+    gltf.add("cameras",
+             {{"type", "perspective"}, {"name", "close"}, {"perspective", {{"yfov", 0.5}, {"znear", 0.1}}}});
     gltf.add_node({{"name", "tripod"}, {"camera", 0}, {"translation", {0, 0, 2}}});
     gltf.write(file);
 }
@@ -50,7 +53,8 @@ TEST_CASE("what a model lacks is one line for each kind, and an error with --str
     CHECK(told.status == 0);
     CHECK(told.err == "postfx: m.gltf: 2 textures are missing (first: x.png)\n");
     std::filesystem::remove(folder / "out.pfm");
-    check_refused(render(folder.path(), "m.gltf", {"--strict"}), "m.gltf: 2 textures are missing (first: x.png)");
+    check_refused(render(folder.path(), "m.gltf", {"--strict"}),
+                  "m.gltf: 2 textures are missing (first: x.png)");
     CHECK_FALSE(std::filesystem::exists(folder / "out.pfm"));
     // In a scene file just the same.
     std::ofstream(folder / "s.yaml") << "background: 1\nnodes: [{mesh: {model: m.gltf}}]\n";
@@ -82,8 +86,9 @@ TEST_CASE("a file that the reader does not survive is one message") {
     CHECK((outcome.status == 0 || outcome.status == 2));
     if (outcome.status == 2) check_refused(outcome, "a.ply");
     // A count that asks for more memory than there is.
-    std::ofstream(folder / "b.ply") << "ply\nformat binary_little_endian 1.0\nelement vertex 4000000000\nproperty float x\n"
-                                       "property float y\nproperty float z\nend_header\n1234";
+    std::ofstream(folder / "b.ply")
+        << "ply\nformat binary_little_endian 1.0\nelement vertex 4000000000\nproperty float x\n"
+           "property float y\nproperty float z\nend_header\n1234";
     check_refused(render(folder.path(), "b.ply"), "b.ply: ");
     std::ofstream(folder / "c.gltf") << std::string(1u << 20, '[');
     check_refused(render(folder.path(), "c.gltf"), "c.gltf: ");
@@ -116,7 +121,8 @@ TEST_CASE("models of the field cases") {
     check_refused(render(extensions, "basisu.gltf"), "KHR_texture_basisu");
     check_refused(render(extensions, "made-up.gltf"), "VENDOR_made_up");
     CHECK(render(copy("19-missing-texture-fails-the-model"), "a.gltf").status == 0);
-    check_refused(render(copy("21-ply-aborts"), "cube.ply"), "cube.ply: can't read this model: the reader crashed");
+    check_refused(render(copy("21-ply-aborts"), "cube.ply"),
+                  "cube.ply: can't read this model: the reader crashed");
     const auto hostile = copy("hostile");
     for (const char* name : {"b1.glb", "g16.gltf", "t.obj"})
         check_refused(render(hostile, name), name == std::string("t.obj") ? "dht.jpg" : name);

@@ -29,7 +29,9 @@ public:
         return add("bufferViews", {{"buffer", 0}, {"byteOffset", offset}, {"byteLength", size}});
     }
     std::size_t floats(const std::string& type, const std::vector<float>& values) {
-        const std::size_t width = type == "SCALAR" ? 1 : type == "MAT4" ? 16 : static_cast<std::size_t>(type[3] - '0');
+        const std::size_t width = type == "SCALAR" ? 1
+                                  : type == "MAT4" ? 16
+                                                   : static_cast<std::size_t>(type[3] - '0');
         return add("accessors", {{"bufferView", view(values)},
                                  {"componentType", 5126},
                                  {"count", values.size() / width},
@@ -70,7 +72,8 @@ public:
     }
     /// An image file as texture; returns the texture's index.
     std::size_t add_texture(const std::string& uri, const Json& sampler = Json::object()) {
-        return add("textures", {{"source", add("images", {{"uri", uri}})}, {"sampler", add("samplers", sampler)}});
+        return add("textures",
+                   {{"source", add("images", {{"uri", uri}})}, {"sampler", add("samplers", sampler)}});
     }
 
     /// Write NAME.gltf, its buffer in NAME.bin or under another name.
@@ -79,7 +82,8 @@ public:
         std::ofstream(file.parent_path() / buffer, std::ios::binary)
             .write(reinterpret_cast<const char*>(bytes_.data()), static_cast<std::streamsize>(bytes_.size()));
         Json whole = json;
-        whole["buffers"] = {{{"byteLength", bytes_.size()}, {"uri", buffer_uri.empty() ? buffer : buffer_uri}}};
+        whole["buffers"] = {
+            {{"byteLength", bytes_.size()}, {"uri", buffer_uri.empty() ? buffer : buffer_uri}}};
         std::ofstream(file) << whole.dump();
         return file;
     }
@@ -111,10 +115,27 @@ private:
 };
 
 /// An 8-bit picture, top row first, four numbers to a pixel.
-inline void write_tga(const std::filesystem::path& file, int width, int height, const std::vector<std::uint8_t>& rgba) {
+inline void write_tga(const std::filesystem::path& file, int width, int height,
+                      const std::vector<std::uint8_t>& rgba) {
     std::ofstream out(file, std::ios::binary);
-    const std::uint8_t head[18] = {0, 0, 2, 0, 0, 0, 0, 0, 0, 0, 0, 0, static_cast<std::uint8_t>(width), 0,
-                                   static_cast<std::uint8_t>(height), 0, 32, 0x28};
+    const std::uint8_t head[18] = {0,
+                                   0,
+                                   2,
+                                   0,
+                                   0,
+                                   0,
+                                   0,
+                                   0,
+                                   0,
+                                   0,
+                                   0,
+                                   0,
+                                   static_cast<std::uint8_t>(width),
+                                   0,
+                                   static_cast<std::uint8_t>(height),
+                                   0,
+                                   32,
+                                   0x28};
     out.write(reinterpret_cast<const char*>(head), sizeof head);
     for (std::size_t i = 0; i < rgba.size(); i += 4) {
         const std::uint8_t bgra[4] = {rgba[i + 2], rgba[i + 1], rgba[i], rgba[i + 3]};

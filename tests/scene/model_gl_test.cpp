@@ -36,7 +36,8 @@ struct Frame {
         const glm::dmat4 view_to_world = glm::make_mat4(camera.view_to_world.data());
         const glm::dvec4 seen = glm::inverse(view_to_world) * glm::dvec4(x, y, 0, 1);
         const double half = -seen.z * camera.tan_half_fov();
-        return {static_cast<int>((seen.x / half * 0.5 + 0.5) * size), static_cast<int>((seen.y / half * 0.5 + 0.5) * size)};
+        return {static_cast<int>((seen.x / half * 0.5 + 0.5) * size),
+                static_cast<int>((seen.y / half * 0.5 + 0.5) * size)};
     }
     glm::vec3 at(double x, double y) const {
         const glm::ivec2 p = pixel(x, y);
@@ -50,7 +51,8 @@ struct Frame {
 
 Image read(const SceneFrame& frame, const std::string& name) {
     for (const SceneAttachment& attachment : frame.attachments) {
-        if (attachment.name == name) return postfx::gl::read_texture(attachment.texture, size, size, attachment.format);
+        if (attachment.name == name)
+            return postfx::gl::read_texture(attachment.texture, size, size, attachment.format);
     }
     throw std::logic_error("no attachment " + name);
 }
@@ -89,13 +91,15 @@ Json textured(int index, Json info = Json::object()) {
 }
 
 glm::vec3 middle(const Image& image) {
-    return {image.at(size / 2, size / 2, 0), image.at(size / 2, size / 2, 1), image.at(size / 2, size / 2, 2)};
+    return {image.at(size / 2, size / 2, 0), image.at(size / 2, size / 2, 1),
+            image.at(size / 2, size / 2, 2)};
 }
 
 double largest_difference(const Image& a, const Image& b) {
     double result = 0;
     for (std::size_t i = 0; i < a.values.size(); ++i)
-        result = std::max(result, std::abs(static_cast<double>(a.values[i]) - static_cast<double>(b.values[i])));
+        result =
+            std::max(result, std::abs(static_cast<double>(a.values[i]) - static_cast<double>(b.values[i])));
     return result;
 }
 
@@ -114,11 +118,13 @@ std::size_t count_different(const Image& a, const Image& b, float by) {
 
 /// Two quads of which one throws its shadow on the other.
 void add_stairs(GltfFile& gltf, double scale, const glm::dvec3& at = glm::dvec3(0)) {
-    const Json material = {{"doubleSided", true}, {"pbrMetallicRoughness", {{"metallicFactor", 0}, {"roughnessFactor", 0.5}}}};
+    const Json material = {{"doubleSided", true},
+                           {"pbrMetallicRoughness", {{"metallicFactor", 0}, {"roughnessFactor", 0.5}}}};
     const std::size_t mesh = gltf.add_quad(material);
     gltf.add("nodes", {{"mesh", mesh}});
     gltf.add("nodes", {{"mesh", mesh}, {"scale", {0.4, 0.4, 0.4}}, {"translation", {-0.2, 0.3, 0.6}}});
-    gltf.add_node({{"children", {0, 1}}, {"scale", {scale, scale, scale}}, {"translation", {at.x, at.y, at.z}}});
+    gltf.add_node(
+        {{"children", {0, 1}}, {"scale", {scale, scale, scale}}, {"translation", {at.x, at.y, at.z}}});
 }
 
 } // namespace
@@ -137,7 +143,8 @@ TEST_CASE("models from a millimetre to a hundred kilometres look alike") {
     const auto lamp = [](double scale) {
         return draw(scene_of([&](GltfFile& gltf) {
             add_stairs(gltf, scale);
-            gltf.json["extensions"]["KHR_lights_punctual"]["lights"] = {{{"type", "point"}, {"intensity", 9 * scale * scale}}};
+            gltf.json["extensions"]["KHR_lights_punctual"]["lights"] = {
+                {{"type", "point"}, {"intensity", 9 * scale * scale}}};
             gltf.add_node({{"translation", {scale, scale, 2 * scale}},
                            {"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}});
         }));
@@ -158,11 +165,11 @@ TEST_CASE("wrap and filter of samplers") {
     // u from -1 to 2 over the quad: its thirds are -1..0, 0..1, 1..2.
     const auto shown = [](const Json& sampler) {
         return draw(scene_of([&](GltfFile& gltf) {
-                   gltf.add_texture("two.tga", sampler);
-                   Json attributes = gltf.quad_attributes();
-                   attributes["TEXCOORD_0"] = gltf.floats("VEC2", {-1, 1, 2, 1, 2, 0, -1, 0});
-                   gltf.add_node({{"mesh", gltf.add_quad(unlit(textured(0)), attributes)}});
-               }));
+            gltf.add_texture("two.tga", sampler);
+            Json attributes = gltf.quad_attributes();
+            attributes["TEXCOORD_0"] = gltf.floats("VEC2", {-1, 1, 2, 1, 2, 0, -1, 0});
+            gltf.add_node({{"mesh", gltf.add_quad(unlit(textured(0)), attributes)}});
+        }));
     };
     const auto reds = [](const Frame& frame) {
         std::string result; // from the left to the right of the quad
@@ -186,24 +193,32 @@ TEST_CASE("wrap and filter of samplers") {
 TEST_CASE("texture transforms and the second set of coordinates") {
     const auto shown = [](const Json& info, bool second) {
         return draw(scene_of([&](GltfFile& gltf) {
-                   gltf.add_texture("two.tga", {{"magFilter", 9728}, {"minFilter", 9728}});
-                   Json attributes = gltf.quad_attributes();
-                   if (second) attributes["TEXCOORD_1"] = gltf.floats("VEC2", {1, 1, 0, 1, 0, 0, 1, 0});
-                   Json material = unlit(textured(0, info));
-                   if (second) material["occlusionTexture"] = {{"index", 0}}; // so that both sets are used
-                   gltf.add_node({{"mesh", gltf.add_quad(material, attributes)}});
-               }));
+            gltf.add_texture("two.tga", {{"magFilter", 9728}, {"minFilter", 9728}});
+            Json attributes = gltf.quad_attributes();
+            if (second) attributes["TEXCOORD_1"] = gltf.floats("VEC2", {1, 1, 0, 1, 0, 0, 1, 0});
+            Json material = unlit(textured(0, info));
+            if (second) material["occlusionTexture"] = {{"index", 0}}; // so that both sets are used
+            gltf.add_node({{"mesh", gltf.add_quad(material, attributes)}});
+        }));
     };
-    const auto left_is_red = [](const Frame& frame) { return frame.at(-0.5, 0).r > 0.5f && frame.at(0.5, 0).g > 0.5f; };
-    const auto left_is_green = [](const Frame& frame) { return frame.at(-0.5, 0).g > 0.5f && frame.at(0.5, 0).r > 0.5f; };
+    const auto left_is_red = [](const Frame& frame) {
+        return frame.at(-0.5, 0).r > 0.5f && frame.at(0.5, 0).g > 0.5f;
+    };
+    const auto left_is_green = [](const Frame& frame) {
+        return frame.at(-0.5, 0).g > 0.5f && frame.at(0.5, 0).r > 0.5f;
+    };
     CHECK(left_is_red(shown(Json::object(), false)));
     CHECK(left_is_green(shown({{"texCoord", 1}}, true)));
-    const auto transform = [](const Json& values) { return Json{{"extensions", {{"KHR_texture_transform", values}}}}; };
+    const auto transform = [](const Json& values) {
+        return Json{{"extensions", {{"KHR_texture_transform", values}}}};
+    };
     CHECK(left_is_green(shown(transform({{"offset", {0.5, 0}}}), false)));
     CHECK(left_is_green(shown(transform({{"texCoord", 1}}), true)));
     // Turned by 90 degrees red and green lie one above the other.
     const Frame turned = shown(transform({{"rotation", std::acos(0.0)}}), false);
-    std::cout << turned.at(-0.5,0.5).r << " " << turned.at(-0.5,0.5).g << " / " << turned.at(0.5,0.5).r << " " << turned.at(0.5,0.5).g<< " / " << turned.at(0.5,-0.5).r<< " / " << turned.at(-0.5,-0.5).r << "\n";
+    std::cout << turned.at(-0.5, 0.5).r << " " << turned.at(-0.5, 0.5).g << " / " << turned.at(0.5, 0.5).r
+              << " " << turned.at(0.5, 0.5).g << " / " << turned.at(0.5, -0.5).r << " / "
+              << turned.at(-0.5, -0.5).r << "\n";
     CHECK(turned.at(-0.5, 0.5) == turned.at(0.5, 0.5));
     CHECK(turned.at(0, -0.5) != turned.at(0, 0.5));
 }
@@ -233,16 +248,20 @@ TEST_CASE("alpha is for MASK and BLEND alone, and vertices have it too") {
 TEST_CASE("metalness and roughness are factors times a texture") {
     const auto shown = [](double metalness, double roughness, const char* picture) {
         return draw(scene_of([&](GltfFile& gltf) {
-                   Json pbr = {{"baseColorFactor", {0.8, 0.2, 0.2, 1}}, {"metallicFactor", metalness}, {"roughnessFactor", roughness}};
+                   Json pbr = {{"baseColorFactor", {0.8, 0.2, 0.2, 1}},
+                               {"metallicFactor", metalness},
+                               {"roughnessFactor", roughness}};
                    if (picture) {
                        gltf.add_texture(picture);
                        pbr["metallicRoughnessTexture"] = {{"index", 0}};
                    }
                    gltf.add_node({{"mesh", gltf.add_quad({{"pbrMetallicRoughness", pbr}})}});
-               })).color;
+               }))
+            .color;
     };
     CHECK(largest_difference(shown(0, 0.2, "white.tga"), shown(0, 0.2, nullptr)) < 0.002);
-    CHECK(largest_difference(shown(0.5, 0.6, "white.tga"), shown(0.5, 0.6, nullptr)) > 0.01); // lit for another reflectance
+    CHECK(largest_difference(shown(0.5, 0.6, "white.tga"), shown(0.5, 0.6, nullptr))
+          > 0.01); // lit for another reflectance
     constexpr double grey = 128.0 / 255;
     CHECK(largest_difference(shown(1, 1, "grey.tga"), shown(grey, grey, "white.tga")) < 0.002);
     CHECK(largest_difference(shown(1, 1, "grey.tga"), shown(1, 1, "white.tga")) > 0.05);
@@ -254,21 +273,26 @@ TEST_CASE("normal maps have a scale, occlusion a strength, emission a strength, 
                           gltf.add_texture("tilted.tga");
                           gltf.add_texture("grey.tga");
                           if (!material.contains("pbrMetallicRoughness"))
-                              material["pbrMetallicRoughness"] = {{"metallicFactor", 0}, {"baseColorFactor", {0.5, 0.5, 0.5, 1}}};
+                              material["pbrMetallicRoughness"] = {{"metallicFactor", 0},
+                                                                  {"baseColorFactor", {0.5, 0.5, 0.5, 1}}};
                           gltf.add_node({{"mesh", gltf.add_quad(material)}});
                       })).color);
     };
     const glm::vec3 plain = shown(Json::object());
     // 128 / 255 is not quite the middle: a tilt of 0.2 degrees.
     CHECK(shown({{"normalTexture", {{"index", 0}, {"scale", 0}}}}).g == Approx(plain.g).epsilon(0.01));
-    const float full = shown({{"normalTexture", {{"index", 0}}}}).g, part = shown({{"normalTexture", {{"index", 0}, {"scale", 0.3}}}}).g;
+    const float full = shown({{"normalTexture", {{"index", 0}}}}).g,
+                part = shown({{"normalTexture", {{"index", 0}, {"scale", 0.3}}}}).g;
     CHECK(std::abs(full - plain.g) > 0.02f);
     CHECK(part != Approx(full).epsilon(0.01));
-    const float dark = shown({{"occlusionTexture", {{"index", 1}}}}).g, half = shown({{"occlusionTexture", {{"index", 1}, {"strength", 0.5}}}}).g;
+    const float dark = shown({{"occlusionTexture", {{"index", 1}}}}).g,
+                half = shown({{"occlusionTexture", {{"index", 1}, {"strength", 0.5}}}}).g;
     CHECK(dark < half);
     CHECK(half < plain.g);
     CHECK(half == Approx((dark + plain.g) / 2).epsilon(0.005));
-    const glm::vec3 glow = shown({{"emissiveFactor", {1, 0, 0}}, {"extensions", {{"KHR_materials_emissive_strength", {{"emissiveStrength", 5}}}}}});
+    const glm::vec3 glow =
+        shown({{"emissiveFactor", {1, 0, 0}},
+               {"extensions", {{"KHR_materials_emissive_strength", {{"emissiveStrength", 5}}}}}});
     CHECK(glow.r - plain.r == Approx(5).epsilon(0.01));
     const glm::vec3 bare = shown(unlit({{"pbrMetallicRoughness", {{"baseColorFactor", {0.25, 0.5, 1, 1}}}}}));
     CHECK(bare.r == Approx(0.25).epsilon(0.001));
@@ -281,7 +305,8 @@ TEST_CASE("one-sided surfaces are not seen from behind") {
             Scene scene = scene_of([&](GltfFile& gltf) {
                 const std::size_t mesh = gltf.add_quad({{"doubleSided", both}});
                 gltf.add_node({{"mesh", mesh}, {"rotation", {0, turned ? 1 : 0, 0, turned ? 0 : 1}}});
-                gltf.add("cameras", {{"type", "perspective"}, {"perspective", {{"yfov", 1}, {"znear", 0.1}}}});
+                gltf.add("cameras",
+                         {{"type", "perspective"}, {"perspective", {{"yfov", 1}, {"znear", 0.1}}}});
                 gltf.add_node({{"camera", 0}, {"translation", {0, 0, 5}}});
             });
             scene.camera = scene.cameras.at(0).camera;
@@ -299,9 +324,11 @@ TEST_CASE("animation and skins are drawn at their time, and what is said of a fr
         const std::size_t still = gltf.add_node(Json::object()), moving = gltf.add_node(Json::object());
         gltf.add("skins", {{"joints", {still, moving}}});
         gltf.add_node({{"mesh", mesh}, {"skin", 0}});
-        const std::size_t times = gltf.floats("SCALAR", {0, 2}), moves = gltf.floats("VEC3", {0, 0, 0, -1.8f, 0, -3});
-        gltf.add("animations", {{"samplers", {{{"input", times}, {"output", moves}}}},
-                                {"channels", {{{"sampler", 0}, {"target", {{"node", moving}, {"path", "translation"}}}}}}});
+        const std::size_t times = gltf.floats("SCALAR", {0, 2}),
+                          moves = gltf.floats("VEC3", {0, 0, 0, -1.8f, 0, -3});
+        gltf.add("animations",
+                 {{"samplers", {{{"input", times}, {"output", moves}}}},
+                  {"channels", {{{"sampler", 0}, {"target", {{"node", moving}, {"path", "translation"}}}}}}});
     });
     const auto covered = [&](double time) {
         const Image depth = draw(scene, time).depth;

@@ -43,10 +43,12 @@ TEST_CASE("URIs of buffers and images are percent-encoded") {
     const TemporaryDirectory folder;
     write_tga(folder / "half tone (1).tga", 2, 1, red_green);
     GltfFile gltf;
-    gltf.add_node({{"mesh", gltf.add_quad({{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}}}})}});
+    gltf.add_node(
+        {{"mesh", gltf.add_quad({{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}}}})}});
     gltf.add_texture("half%20tone%20%281%29.tga");
     gltf.buffer_uri = "my%20b%C3%BCffer.bin";
-    const Model model = load_model(gltf.write(folder / "m.gltf", "my b\xc3\xbc""ffer.bin"));
+    const Model model = load_model(gltf.write(folder / "m.gltf", "my b\xc3\xbc"
+                                                                 "ffer.bin"));
     CHECK(model.losses.empty());
     CHECK(model.materials.at(0).diffuse_texture->width == 2);
     CHECK(only_mesh(model).vertices.size() == 4);
@@ -98,7 +100,8 @@ TEST_CASE("a material of glTF is taken with its factors, extensions and sides") 
     CHECK(full.occlusion_strength == 0.25f);
     CHECK(full.emission == glm::vec3(5, 2.5f, 0));
     CHECK(full.specular.r == Approx(0.5 / 9)); // ((2 - 1) / (2 + 1))^2, half of it
-    const Material unlit = material_of({{"emissiveFactor", {1, 1, 1}}, {"extensions", {{"KHR_materials_unlit", Json::object()}}}});
+    const Material unlit = material_of(
+        {{"emissiveFactor", {1, 1, 1}}, {"extensions", {{"KHR_materials_unlit", Json::object()}}}});
     CHECK(unlit.unlit);
     CHECK_FALSE(unlit.metal_rough); // its default metalness of 1 would leave nothing of the base colour
     CHECK(unlit.emission == glm::vec3(0));
@@ -113,7 +116,8 @@ TEST_CASE("samplers, texture transforms and second sets of coordinates") {
             {{"index", 0},
              {"texCoord", 3},
              {"extensions",
-              {{"KHR_texture_transform", {{"offset", {0, 1}}, {"rotation", std::acos(0.0)}, {"scale", {0.5, 0.5}}}}}}}}}},
+              {{"KHR_texture_transform",
+                {{"offset", {0, 1}}, {"rotation", std::acos(0.0)}, {"scale", {0.5, 0.5}}}}}}}}}},
          {"emissiveTexture", {{"index", 0}, {"texCoord", 1}}}},
         {{"samplers", {{{"wrapS", 33071}, {"wrapT", 33648}, {"magFilter", 9728}, {"minFilter", 9985}}}}});
     const Sampler& sampler = material.diffuse_texture.sampler;
@@ -122,7 +126,7 @@ TEST_CASE("samplers, texture transforms and second sets of coordinates") {
     CHECK(sampler.magnify == Sampler::Filter::nearest);
     CHECK(sampler.minify == Sampler::Filter::linear);
     CHECK(sampler.mips == Sampler::Mips::nearest);
-    CHECK(material.diffuse_texture.uv_set == 0); // set 3
+    CHECK(material.diffuse_texture.uv_set == 0);  // set 3
     CHECK(material.emission_texture.uv_set == 1); // set 1
     // The extension's own example: the lower left quadrant of the picture, turned clockwise. With v upwards its corners
     // are (0, 0) to (0.5, 0.5), and the quad's lower left corner shows the picture's lower right of it.
@@ -155,7 +159,8 @@ TEST_CASE("required extensions that are not known refuse the file by name, other
           == std::vector<std::string>{"2 optional extensions are left out (first: VENDOR_a)"});
     for (const char* name : {"VENDOR_b", "KHR_texture_basisu", "EXT_meshopt_compression"}) {
         gltf.json["extensionsRequired"] = {"KHR_materials_unlit", name};
-        CHECK_THROWS_WITH(load_model(gltf.write(folder / "m.gltf")), Catch::Contains(name) && Catch::Contains("m.gltf"));
+        CHECK_THROWS_WITH(load_model(gltf.write(folder / "m.gltf")),
+                          Catch::Contains(name) && Catch::Contains("m.gltf"));
         CHECK_THROWS_WITH(load_model(gltf.write_glb(folder / "m.glb")), Catch::Contains(name));
     }
 }
@@ -164,19 +169,22 @@ TEST_CASE("quantized, strided and sparse numbers") {
     const TemporaryDirectory folder;
     GltfFile gltf;
     gltf.json["extensionsUsed"] = gltf.json["extensionsRequired"] = {"KHR_mesh_quantization"};
-    const std::vector<std::int8_t> corners = {-127, -127, 0, 0, 127, -127, 0, 0, 127, 127, 0, 0, -128, 127, 0, 0};
+    const std::vector<std::int8_t> corners = {-127, -127, 0, 0, 127,  -127, 0, 0,
+                                              127,  127,  0, 0, -128, 127,  0, 0};
     const std::size_t view = gltf.view(corners);
     gltf.json["bufferViews"][view]["byteStride"] = 4;
-    const std::size_t places = gltf.view(std::vector<std::uint8_t>{2}), values = gltf.view(std::vector<std::int8_t>{0, 127, 0});
-    Json attributes = {{"POSITION", gltf.add("accessors", {{"bufferView", view},
-                                                           {"componentType", 5120},
-                                                           {"normalized", true},
-                                                           {"count", 4},
-                                                           {"type", "VEC3"},
-                                                           {"sparse",
-                                                            {{"count", 1},
-                                                             {"indices", {{"bufferView", places}, {"componentType", 5121}}},
-                                                             {"values", {{"bufferView", values}}}}}})}};
+    const std::size_t places = gltf.view(std::vector<std::uint8_t>{2}),
+                      values = gltf.view(std::vector<std::int8_t>{0, 127, 0});
+    Json attributes = {
+        {"POSITION", gltf.add("accessors", {{"bufferView", view},
+                                            {"componentType", 5120},
+                                            {"normalized", true},
+                                            {"count", 4},
+                                            {"type", "VEC3"},
+                                            {"sparse",
+                                             {{"count", 1},
+                                              {"indices", {{"bufferView", places}, {"componentType", 5121}}},
+                                              {"values", {{"bufferView", values}}}}}})}};
     gltf.add_node({{"mesh", gltf.add_quad(Json::object(), attributes)}});
     const Bounds bounds = only_mesh(load_model(gltf.write_glb(folder / "m.glb"))).bounds();
     CHECK(bounds.low == glm::dvec3(-1, -1, 0));
@@ -223,14 +231,21 @@ TEST_CASE("animations: steps, straight lines and curves, held, looped") {
         return Json{{"sampler", sampler_index}, {"target", {{"node", node}, {"path", path}}}};
     };
     gltf.add("animations", {{"name", "all"},
-                            {"samplers", {sampler(straight, "LINEAR"), sampler(straight, "STEP"), sampler(curve, "CUBICSPLINE"),
-                                          sampler(turn, "LINEAR")}},
-                            {"channels", {channel(0, 0, "translation"), channel(1, 1, "translation"),
-                                          channel(2, 2, "translation"), channel(3, 0, "rotation")}}});
-    gltf.add("animations", {{"name", "again"}, {"samplers", {sampler(straight, "LINEAR")}}, {"channels", {channel(0, 1, "translation")}}});
-    gltf.add("animations", {{"name", "beside"}, {"samplers", {sampler(straight, "LINEAR")}}, {"channels", {channel(0, 1, "scale")}}});
+                            {"samplers",
+                             {sampler(straight, "LINEAR"), sampler(straight, "STEP"),
+                              sampler(curve, "CUBICSPLINE"), sampler(turn, "LINEAR")}},
+                            {"channels",
+                             {channel(0, 0, "translation"), channel(1, 1, "translation"),
+                              channel(2, 2, "translation"), channel(3, 0, "rotation")}}});
+    gltf.add("animations", {{"name", "again"},
+                            {"samplers", {sampler(straight, "LINEAR")}},
+                            {"channels", {channel(0, 1, "translation")}}});
+    gltf.add("animations", {{"name", "beside"},
+                            {"samplers", {sampler(straight, "LINEAR")}},
+                            {"channels", {channel(0, 1, "scale")}}});
     const Model model = load_model(gltf.write(folder / "m.gltf"));
-    CHECK(model.losses == std::vector<std::string>{"1 animation is left out, for another moves the same nodes (again)"});
+    CHECK(model.losses
+          == std::vector<std::string>{"1 animation is left out, for another moves the same nodes (again)"});
     Scene scene;
     add_model(scene, model);
     CHECK(scene.facts().moves);
@@ -239,16 +254,17 @@ TEST_CASE("animations: steps, straight lines and curves, held, looped") {
         scene.place_nodes(time, placed);
         return placed[node][3].x;
     };
-    CHECK(x(0, 0) == 0);   // before the first key
+    CHECK(x(0, 0) == 0); // before the first key
     CHECK(x(2, 0) == 4);
-    CHECK(x(3, 0) == 8);   // the end is the end
-    CHECK(x(5, 0) == 4);   // and then it begins again: 5 is 2 into the second time
+    CHECK(x(3, 0) == 8); // the end is the end
+    CHECK(x(5, 0) == 4); // and then it begins again: 5 is 2 into the second time
     CHECK(x(2.9, 1) == 0);
     CHECK(x(3, 1) == 8);
     CHECK(x(1.5, 2) == Approx(8 * (3.0 / 16 - 2.0 / 64)));
     std::vector<glm::dmat4> placed;
     scene.place_nodes(2, placed);
-    CHECK(placed[0][0].x == Approx(2 * std::cos(glm::radians(45.0)))); // its scale stays, and half of the turn
+    CHECK(placed[0][0].x
+          == Approx(2 * std::cos(glm::radians(45.0)))); // its scale stays, and half of the turn
 }
 
 TEST_CASE("skins and shapes move vertices") {
@@ -285,7 +301,8 @@ TEST_CASE("cameras and lights of a file") {
     const TemporaryDirectory folder;
     GltfFile gltf;
     gltf.add_node({{"mesh", gltf.add_quad(Json::object())}});
-    gltf.add("cameras", {{"type", "perspective"}, {"name", "lens"}, {"perspective", {{"yfov", 1}, {"znear", 0.25}}}});
+    gltf.add("cameras",
+             {{"type", "perspective"}, {"name", "lens"}, {"perspective", {{"yfov", 1}, {"znear", 0.25}}}});
     gltf.json["extensions"]["KHR_lights_punctual"]["lights"] = {
         {{"type", "directional"}, {"intensity", glm::radians(180.0f)}, {"color", {1, 0.5, 0}}},
         {{"type", "spot"}, {"range", 9}, {"spot", {{"outerConeAngle", 0.5}}}},
@@ -318,7 +335,8 @@ TEST_CASE("missing textures and libraries leave the rest, and are counted by fil
         gltf.add_texture(name);
     for (int i = 0; i < 3; ++i) {
         gltf.add_node({{"mesh", gltf.add_quad({{"pbrMetallicRoughness",
-                                                {{"baseColorFactor", {0.5, 0, 0, 1}}, {"baseColorTexture", {{"index", i}}}}}})}});
+                                                {{"baseColorFactor", {0.5, 0, 0, 1}},
+                                                 {"baseColorTexture", {{"index", i}}}}}})}});
     }
     const Model model = load_model(gltf.write(folder / "m.gltf"));
     CHECK(model.losses == std::vector<std::string>{"2 textures are missing (first: x y.png)"});
@@ -326,7 +344,8 @@ TEST_CASE("missing textures and libraries leave the rest, and are counted by fil
     CHECK(model.materials[0].diffuse == glm::vec3(0.5f, 0, 0));
 
     std::ofstream(folder / "m.obj") << "mtllib not there.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl a\nf 1 2 3\n";
-    CHECK(load_model(folder / "m.obj").losses == std::vector<std::string>{"1 material library is missing (not there.mtl)"});
+    CHECK(load_model(folder / "m.obj").losses
+          == std::vector<std::string>{"1 material library is missing (not there.mtl)"});
     std::ofstream(folder / "not there.mtl") << "newmtl a\nKd 1 0 0\nmap_Kd gone.png\n";
     CHECK(load_model(folder / "m.obj").losses == std::vector<std::string>{"1 texture is missing (gone.png)"});
 }
@@ -335,7 +354,8 @@ TEST_CASE("a texture of a kind that is not read is told, a damaged one refuses t
     const TemporaryDirectory folder;
     GltfFile gltf;
     gltf.add_texture("t.dds");
-    gltf.add_node({{"mesh", gltf.add_quad({{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}}}})}});
+    gltf.add_node(
+        {{"mesh", gltf.add_quad({{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}}}})}});
     gltf.write(folder / "m.gltf");
     std::ofstream(folder / "t.dds") << "DDS |and so on and on";
     CHECK(load_model(folder / "m.gltf").losses
@@ -346,18 +366,21 @@ TEST_CASE("a texture of a kind that is not read is told, a damaged one refuses t
 
 TEST_CASE("triangles with vertices that are nowhere are left out and counted") {
     const TemporaryDirectory folder;
-    for (const float bad : {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity(), 1e30f}) {
+    for (const float bad :
+         {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity(), 1e30f}) {
         GltfFile gltf;
         Json attributes = gltf.quad_attributes();
         attributes["POSITION"] = gltf.floats("VEC3", {-1, -1, 0, bad, -1, 0, 1, 1, 0, -1, 1, 0});
         gltf.add_node({{"mesh", gltf.add_quad(Json::object(), attributes)}});
         const Model model = load_model(gltf.write(folder / "m.gltf"));
         CHECK(only_mesh(model).indices.size() == 3);
-        CHECK(model.losses == std::vector<std::string>{"1 triangle is left out, for a vertex of it is not finite"});
+        CHECK(model.losses
+              == std::vector<std::string>{"1 triangle is left out, for a vertex of it is not finite"});
         CHECK(only_mesh(model).bounds().radius() < 2);
     }
     GltfFile gltf;
-    gltf.add_node({{"mesh", gltf.add_quad(Json::object(), {}, {{"indices", gltf.shorts("SCALAR", {0, 1, 2, 0, 2, 9})}})}});
+    gltf.add_node({{"mesh", gltf.add_quad(Json::object(), {},
+                                          {{"indices", gltf.shorts("SCALAR", {0, 1, 2, 0, 2, 9})}})}});
     CHECK(load_model(gltf.write(folder / "m.gltf")).losses.size() == 1);
 
     std::ofstream(folder / "m.obj") << "v 0 0 0\nv 1 0 0\nv 0 1 0\nv nan 0 0\nf 1 2 3\nf 1 2 4\n";
@@ -373,10 +396,13 @@ TEST_CASE("map_d of OBJ is the opacity") {
     write_tga(folder / "mask.tga", 2, 1, {255, 255, 255, 255, 0, 0, 0, 255});
     write_tga(folder / "soft.tga", 2, 1, {100, 100, 100, 255, 50, 50, 50, 255});
     write_tga(folder / "both.tga", 2, 1, {9, 9, 9, 255, 9, 9, 9, 128});
-    std::ofstream(folder / "m.obj") << "mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nusemtl a\nf 1/1 2/1 3/1\n";
+    std::ofstream(folder / "m.obj")
+        << "mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nusemtl a\nf 1/1 2/1 3/1\n";
     const auto material = [&](const std::string& lines) {
         std::ofstream(folder / "m.mtl") << "newmtl a\n" << lines;
-        return only_mesh(load_model(folder / "m.obj")).empty() ? Material() : load_model(folder / "m.obj").materials.back();
+        return only_mesh(load_model(folder / "m.obj")).empty()
+                   ? Material()
+                   : load_model(folder / "m.obj").materials.back();
     };
     const auto alphas = [](const Material& of) {
         return std::vector<int>{of.diffuse_texture->rgba.at(3), of.diffuse_texture->rgba.at(7)};
@@ -399,22 +425,34 @@ TEST_CASE("files that lie about themselves are refused") {
         GltfFile gltf;
         gltf.add_node({{"mesh", gltf.add_quad(Json::object())}});
         damage(gltf);
-        CHECK_THROWS_WITH(load_model(gltf.write(folder / "m.gltf")), Catch::Contains("m.gltf: ") && Catch::Contains(words));
+        CHECK_THROWS_WITH(load_model(gltf.write(folder / "m.gltf")),
+                          Catch::Contains("m.gltf: ") && Catch::Contains(words));
     };
     refused([](GltfFile& f) { f.json["nodes"][0]["children"] = {0}; }, "ancestor");
-    refused([](GltfFile& f) {
-        f.add_node({{"children", {2, 2}}});
-        f.add("nodes", Json::object());
-    }, "two parents");
+    refused(
+        [](GltfFile& f) {
+            f.add_node({{"children", {2, 2}}});
+            f.add("nodes", Json::object());
+        },
+        "two parents");
     refused([](GltfFile& f) { f.json["nodes"][0]["mesh"] = 7; }, "meshes[7]");
     refused([](GltfFile& f) { f.json["nodes"][0]["mesh"] = -1; }, "\"mesh\" is -1");
     refused([](GltfFile& f) { f.json["accessors"][0]["count"] = 1000000000; }, "accessors[0]");
-    refused([](GltfFile& f) { f.json["accessors"][0].erase("bufferView"), f.json["accessors"][0]["count"] = 1u << 31; }, "accessors[0]");
+    refused(
+        [](GltfFile& f) {
+            f.json["accessors"][0].erase("bufferView"), f.json["accessors"][0]["count"] = 1u << 31;
+        },
+        "accessors[0]");
     refused([](GltfFile& f) { f.json["bufferViews"][0]["byteOffset"] = 1u << 30; }, "bufferViews[0]");
     refused([](GltfFile& f) { f.json["bufferViews"][0]["byteStride"] = 0; }, "bufferViews[0]");
     refused([](GltfFile& f) { f.json["asset"]["version"] = "3.0"; }, "3.0");
     refused([](GltfFile& f) { f.json["materials"][0]["emissiveFactor"] = {1, 2}; }, "emissiveFactor");
-    refused([](GltfFile& f) { f.json["scenes"] = 3; f.json["nodes"][0]["translation"] = "x"; }, "translation");
+    refused(
+        [](GltfFile& f) {
+            f.json["scenes"] = 3;
+            f.json["nodes"][0]["translation"] = "x";
+        },
+        "translation");
     // Header of a .glb whose chunk says that it has 4 GB.
     std::ofstream(folder / "b.glb", std::ios::binary)
         << std::string("glTF\2\0\0\0\xff\xff\xff\xff\xf0\xff\xff\xffJSON{{{{{{{{", 28);
@@ -429,13 +467,15 @@ TEST_CASE("a model survives the way between processes, and damage on the way doe
     Json attributes = gltf.quad_attributes();
     attributes["JOINTS_0"] = gltf.shorts("VEC4", std::vector<std::uint16_t>(16, 0));
     attributes["WEIGHTS_0"] = gltf.floats("VEC4", std::vector<float>(16, 0.25f));
-    const std::size_t mesh = gltf.add_quad({{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}}}}, attributes);
+    const std::size_t mesh =
+        gltf.add_quad({{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}}}}, attributes);
     gltf.add_node({{"mesh", mesh}, {"skin", 0}, {"name", "n"}});
     gltf.add_node({{"mesh", mesh}});
     gltf.add("skins", {{"joints", {0}}});
     const std::size_t times = gltf.floats("SCALAR", {0, 1}), moves = gltf.floats("VEC3", {0, 0, 0, 1, 0, 0});
-    gltf.add("animations", {{"samplers", {{{"input", times}, {"output", moves}}}},
-                            {"channels", {{{"sampler", 0}, {"target", {{"node", 1}, {"path", "translation"}}}}}}});
+    gltf.add("animations",
+             {{"samplers", {{{"input", times}, {"output", moves}}}},
+              {"channels", {{{"sampler", 0}, {"target", {{"node", 1}, {"path", "translation"}}}}}}});
     gltf.write(folder / "m.gltf");
 
     std::vector<std::uint8_t> bytes;
@@ -467,7 +507,8 @@ TEST_CASE("a model survives the way between processes, and damage on the way doe
     CHECK_THROWS_AS(read(bytes, 100), std::bad_alloc);
 
     for (std::size_t length = 0; length < bytes.size(); length += 7)
-        CHECK_THROWS_AS(read({bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(length)}), std::runtime_error);
+        CHECK_THROWS_AS(read({bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(length)}),
+                        std::runtime_error);
     // Any byte may be any other: what comes out is a model that can be used or an error.
     for (std::size_t i = 0; i < bytes.size(); ++i) {
         std::vector<std::uint8_t> damaged = bytes;

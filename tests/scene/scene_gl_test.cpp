@@ -403,10 +403,7 @@ TEST_CASE("a bare model is neither burnt out nor dark, whatever it reflects") {
 
 int main(int argc, char* argv[]) {
     std::string why;
-    if (!postfx::testing::has_gl(&why)) {
-        std::cout << "skipped: " << why << "\n";
-        return 77;
-    }
+    if (!postfx::testing::has_gl(&why)) return postfx::testing::skipped(why);
     const postfx::gl::HeadlessContext context(true);
     postfx::gl::enable_debug_output();
     return Catch::Session().run(argc, argv);

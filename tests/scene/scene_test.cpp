@@ -3,8 +3,8 @@
 #include <catch2/catch.hpp>
 
 #include <postfx/error.hpp>
-#include <scene/model.hpp>
 #include <scene/generators.hpp>
+#include <scene/model.hpp>
 #include <scene/scene.hpp>
 #include <temporary_directory.hpp>
 
@@ -142,8 +142,7 @@ TEST_CASE("a mistake in a scene file is one message with its place") {
         {"nodes:\n  - {name: \"a}\n  - {name: \"b\"}",
          "s.yaml:2:12: this is not YAML: the quote that opens here is not closed on its line"},
         {"nodes:\n\t- {name: a}", "s.yaml:2:1: this is not YAML: a tab indents this line; YAML wants spaces"},
-        {"nodes:\n  - mesh {box: {}}",
-         "s.yaml:2:5: this is not YAML: a colon is missing behind \"mesh\""},
+        {"nodes:\n  - mesh {box: {}}", "s.yaml:2:5: this is not YAML: a colon is missing behind \"mesh\""},
         {"nodes:\n  - mesh: {box: {size 1}}",
          "s.yaml:2:18: unknown key \"size 1\" in box; a colon is missing behind \"size\""},
         {"camera:\n  near 1",
