@@ -18,11 +18,12 @@
 #include <fstream>
 #include <map>
 #include <new>
+#include <set>
 
 namespace postfx::host {
 namespace {
 
-/// Finds what the model refers to as find_asset does, and tells of every file that is opened.
+/// Finds what the model refers to as find_asset does, and tells of every file once.
 class AssetSystem : public Assimp::DefaultIOSystem {
 public:
     AssetSystem(std::filesystem::path model, const ReadingHooks& hooks) : model_(std::move(model)), hooks_(hooks) {}
@@ -35,13 +36,14 @@ public:
             if (!asset) return nullptr;
             file = *asset;
         }
-        hooks_.opening(std::filesystem::file_size(file, problem));
+        if (opened_.insert(file).second) hooks_.opening(std::filesystem::file_size(file, problem));
         return DefaultIOSystem::Open(file.c_str(), mode);
     }
 
 private:
     std::filesystem::path model_;
     const ReadingHooks& hooks_;
+    std::set<std::filesystem::path> opened_; ///< assimp opens the same file again and again, to guess what it is
 };
 
 /// assimp says nothing of a material library that an OBJ names and that is not there.

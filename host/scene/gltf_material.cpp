@@ -75,11 +75,21 @@ public:
         read_surface(source, material);
         read_emission(source, material);
         read_alpha(source, material);
-        material.unlit = GltfDocument::extension(source, "KHR_materials_unlit") != nullptr;
+        if (GltfDocument::extension(source, "KHR_materials_unlit")) keep_base_alone(material);
         return std::move(result_);
     }
 
 private:
+    /// KHR_materials_unlit: the base colour is what is seen.
+    static void keep_base_alone(Material& material) {
+        material.unlit = true;
+        material.metal_rough = false;
+        material.emission = glm::vec3(0);
+        for (Texture* texture : {&material.emission_texture, &material.normal_texture, &material.metal_roughness_texture,
+                                 &material.occlusion_texture})
+            *texture = {};
+    }
+
     void read_metal_roughness(const Json& source, Material& material) {
         static const Json none = Json::object();
         const auto found = source.find("pbrMetallicRoughness");

@@ -89,7 +89,6 @@ TEST_CASE("a material of glTF is taken with its factors, extensions and sides") 
          {"emissiveFactor", {1, 0.5, 0}},
          {"extensions",
           {{"KHR_materials_emissive_strength", {{"emissiveStrength", 5}}},
-           {"KHR_materials_unlit", Json::object()},
            {"KHR_materials_ior", {{"ior", 2}}},
            {"KHR_materials_specular", {{"specularFactor", 0.5}}}}}});
     CHECK_FALSE(full.two_sided);
@@ -98,8 +97,11 @@ TEST_CASE("a material of glTF is taken with its factors, extensions and sides") 
     CHECK(full.normal_scale == 0.5f);
     CHECK(full.occlusion_strength == 0.25f);
     CHECK(full.emission == glm::vec3(5, 2.5f, 0));
-    CHECK(full.unlit);
     CHECK(full.specular.r == Approx(0.5 / 9)); // ((2 - 1) / (2 + 1))^2, half of it
+    const Material unlit = material_of({{"emissiveFactor", {1, 1, 1}}, {"extensions", {{"KHR_materials_unlit", Json::object()}}}});
+    CHECK(unlit.unlit);
+    CHECK_FALSE(unlit.metal_rough); // its default metalness of 1 would leave nothing of the base colour
+    CHECK(unlit.emission == glm::vec3(0));
     CHECK_FALSE(full.metal_roughness_texture->srgb);
     CHECK_FALSE(full.occlusion_texture->srgb);
 }
