@@ -111,7 +111,7 @@ private:
     void loop(Window& window, ChainRunner& runner, SceneRenderer& renderer, ViewBounds& bounds) {
         const Scene& scene = renderer.scene();
         Presenter presenter;
-        FlyCamera pilot(scene.camera_at(scene_options_.time()));
+        FlyCamera pilot(scene.camera_at(scene_options_.time()), scene.flying_speed);
         double scene_time = scene_options_.time();
         double last = gl::HostTime::now().wall_ms;
         for (std::uint32_t frame = 0; !window.should_close() && (frames_ == 0 || frame < frames_); ++frame) {

@@ -21,6 +21,7 @@
 #include <fstream>
 #include <map>
 #include <new>
+#include <set>
 
 namespace postfx::host {
 namespace {
@@ -40,7 +41,7 @@ std::string usual_ending(const std::filesystem::path& file) {
 }
 
 /// The model under the name that its content should have, since assimp goes by names, and what it refers to as find_asset
-/// finds it; tells of every file that is opened.
+/// finds it; tells of every file once.
 class AssetSystem : public Assimp::DefaultIOSystem {
 public:
     AssetSystem(std::filesystem::path model, std::string alias, const ReadingHooks& hooks)
@@ -55,7 +56,7 @@ public:
             if (!asset) return nullptr;
             file = *asset;
         }
-        hooks_.opening(std::filesystem::file_size(file, problem));
+        if (opened_.insert(file).second) hooks_.opening(std::filesystem::file_size(file, problem));
         return DefaultIOSystem::Open(file.c_str(), mode);
     }
 
@@ -63,6 +64,8 @@ private:
     std::filesystem::path model_;
     std::string alias_;
     const ReadingHooks& hooks_;
+    std::set<std::filesystem::path>
+        opened_; ///< assimp opens the same file again and again, to guess what it is
 };
 
 /// assimp says nothing of a material library that an OBJ names and that is not there.

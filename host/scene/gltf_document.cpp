@@ -50,9 +50,8 @@ constexpr std::uint32_t json_chunk = 0x4e4f534a, binary_chunk = 0x004e4942;
 GltfDocument::GltfDocument(const std::filesystem::path& file, const ReadingHooks& hooks, Losses& losses)
     : file_(file), hooks_(hooks) {
     read_container();
-    if (!json_.is_object()) fail("this is no glTF: expected a JSON object");
-    check_version();
-    check_extensions(losses);
+    if (version_ == 2) find_version();
+    if (version_ == 2) check_extensions(losses);
 }
 
 void GltfDocument::fail(const std::string& message) const {
@@ -66,8 +65,12 @@ void GltfDocument::read_container() {
     std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
     if (text.starts_with(glb_magic)) {
         if (bytes.size() < 20) fail("this .glb ends within its header");
-        if (const std::uint32_t version = word(bytes, 4); version != 2)
+        if (const std::uint32_t version = word(bytes, 4); version == 1) {
+            version_ = 1;
+            return;
+        } else if (version != 2) {
             fail(fmt::format("this .glb is of version {}, expected 2", version));
+        }
         text = {};
         for (std::size_t at = 12; at + 8 <= bytes.size();) {
             const std::size_t length = word(bytes, at), type = word(bytes, at + 4);
@@ -93,13 +96,19 @@ void GltfDocument::read_container() {
     }
 }
 
-void GltfDocument::check_version() const {
+void GltfDocument::find_version() {
+    if (!json_.is_object()) fail("this is no glTF: expected a JSON object");
     const auto asset = json_.find("asset");
-    const std::string version = asset != json_.end() && asset->is_object() && asset->contains("version")
-                                        && asset->at("version").is_string()
-                                    ? asset->at("version").get<std::string>()
-                                    : "";
-    if (!version.starts_with("2.")) fail(fmt::format("this is glTF of version \"{}\", expected 2", version));
+    const bool told = asset != json_.end() && asset->is_object() && asset->contains("version")
+                      && asset->at("version").is_string();
+    const std::string version = told ? asset->at("version").get<std::string>() : "";
+    const auto meshes = json_.find("meshes");
+    const bool has_objects = meshes != json_.end() && meshes->is_object(); // where version 2 has lists
+    if (version.starts_with("1.") || (!told && has_objects)) {
+        version_ = 1;
+    } else if (!version.starts_with("2.")) {
+        fail(fmt::format("this is glTF of version \"{}\", expected 2", version));
+    }
 }
 
 void GltfDocument::check_extensions(Losses& losses) const {
@@ -241,19 +250,13 @@ std::optional<std::vector<std::uint8_t>> GltfDocument::image_bytes(std::size_t i
 
 bool is_gltf(const std::filesystem::path& file) {
     std::ifstream stream(file, std::ios::binary);
-    std::array<char, 8> head{};
+    std::array<char, 4> head{};
     stream.read(head.data(), head.size());
-    if (std::string_view(head.data(), 4) == glb_magic) return head[4] != 1;
+    if (std::string_view(head.data(), head.size()) == glb_magic) return true;
     std::error_code unknown;
-    if (model_ending(read_start(file, recognized_bytes, "a model"), std::filesystem::file_size(file, unknown))
-        != ".gltf")
-        return false;
-    // Version 1 has objects where version 2 has lists.
-    stream.clear();
-    stream.seekg(0);
-    const auto json = nlohmann::json::parse(stream, nullptr, false);
-    return !(json.is_object() && json.contains("asset") && json["asset"].is_object()
-             && json["asset"].value("version", "2.0").starts_with("1."));
+    return model_ending(read_start(file, recognized_bytes, "a model"),
+                        std::filesystem::file_size(file, unknown))
+           == ".gltf";
 }
 
 } // namespace postfx::host

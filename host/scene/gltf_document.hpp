@@ -25,7 +25,8 @@ public:
     /// Reads .gltf and .glb, whatever the name's ending. Refuses required extensions that we don't know by name.
     GltfDocument(const std::filesystem::path& file, const ReadingHooks& hooks, Losses& losses);
 
-    const std::filesystem::path& file() const { return file_; }
+    /// Of glTF: 1 or 2. Version 1 is another format, of which nothing is checked.
+    int version() const { return version_; }
     const Json& json() const { return json_; }
     std::size_t count(const char* list) const;
     /// json()[list][index].
@@ -49,18 +50,19 @@ public:
 
 private:
     void read_container();
-    void check_version() const;
+    void find_version();
     void check_extensions(Losses& losses) const;
     const std::vector<std::uint8_t>& buffer(std::size_t index) const;
 
     std::filesystem::path file_;
     const ReadingHooks& hooks_;
+    int version_ = 2;
     Json json_;
     std::vector<std::uint8_t> chunk_; ///< the binary chunk of a .glb
     mutable std::map<std::size_t, std::vector<std::uint8_t>> buffers_;
 };
 
-/// Is this a glTF file of version 2 (or of one that we don't know)? Version 1 is another format.
+/// By its ending or its first bytes.
 bool is_gltf(const std::filesystem::path& file);
 
 /// An accessor's elements as numbers, `width` for each: what is normalised lies in -1..1 or 0..1, sparse values are in

@@ -27,7 +27,8 @@ public:
     GltfReader(const std::filesystem::path& file, const ReadingHooks& hooks)
         : document_(file, hooks, losses_), pictures_(file, hooks, losses_) {}
 
-    Model read() {
+    std::optional<Model> read() {
+        if (document_.version() == 1) return std::nullopt;
         order_nodes();
         mark_scene();
         for (const std::size_t node : order_)
@@ -293,7 +294,7 @@ NamedCamera read_gltf_camera(const GltfDocument& document, std::size_t index) {
     return result;
 }
 
-Model read_gltf(const std::filesystem::path& file, const ReadingHooks& hooks) {
+std::optional<Model> read_gltf(const std::filesystem::path& file, const ReadingHooks& hooks) {
     try {
         return GltfReader(file, hooks).read();
     } catch (const Json::exception& error) {

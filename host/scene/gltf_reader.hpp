@@ -46,6 +46,7 @@ std::optional<Light> read_gltf_light(const GltfDocument& document, std::size_t i
 /// cameras[index], looking down the -z of its node.
 NamedCamera read_gltf_camera(const GltfDocument& document, std::size_t index);
 
-Model read_gltf(const std::filesystem::path& file, const ReadingHooks& hooks);
+/// Nothing if the file is of version 1.
+std::optional<Model> read_gltf(const std::filesystem::path& file, const ReadingHooks& hooks);
 
 } // namespace postfx::host

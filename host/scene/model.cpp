@@ -7,6 +7,7 @@
 #include <postfx/error.hpp>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 namespace postfx::host {
 
@@ -20,14 +21,13 @@ std::size_t Model::part_count() const {
 Model load_model(const std::filesystem::path& file, const ReadingHooks& hooks) {
     const Place place{file.string(), 0, 0, {}, {}};
     if (!std::filesystem::is_regular_file(file)) throw Error(place, "there is no such model file");
-    Model model = is_gltf(file) ? read_gltf(file, hooks) : read_with_assimp(file, hooks);
-    if (model.part_count() == 0) {
-        std::string why;
-        for (const std::string& line : model.losses)
-            why += (why.empty() ? ": " : "; ") + line;
-        throw Error(place, "this model has no triangles" + why);
+    std::optional<Model> model = is_gltf(file) ? read_gltf(file, hooks) : std::nullopt;
+    if (!model) model = read_with_assimp(file, hooks);
+    if (model->part_count() == 0) {
+        const std::string why = fmt::format("{}", fmt::join(model->losses, "; "));
+        throw Error(place, fmt::format("this model has no triangles{}{}", why.empty() ? "" : ": ", why));
     }
-    return model;
+    return std::move(*model);
 }
 
 Model load_model_here(const std::filesystem::path& file) {

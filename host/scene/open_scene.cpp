@@ -151,8 +151,11 @@ Scene scene_around_model(const std::filesystem::path& file, const std::filesyste
     scene.surroundings.zenith = {0.34f, 0.36f, 0.4f};
     scene.surroundings.horizon = {0.16f, 0.165f, 0.17f};
     scene.surroundings.ground = {0.07f, 0.07f, 0.07f};
-    for (Light& light : scene.lights)
+    scene.flying_speed = 1.2 * radius;
+    for (Light& light : scene.lights) {
         light.shadow_extent = static_cast<float>(2.4 * radius);
+        light.shadow_near = static_cast<float>(1e-3 * radius);
+    }
     if (!scene.lights.empty()) return scene; // the file's own light, and no other
 
     // Less light on what is bright, so that white stays below a display's white; dark things may be dark.

@@ -78,6 +78,7 @@ struct Light {
     float inner_angle = 20;         ///< degrees from the axis: full light inside
     float outer_angle = 30;         ///< degrees from the axis: none outside
     bool casts_shadow = false;      ///< directional and spot
+    float shadow_near = 0.05f;      ///< spot: metres; what is nearer throws no shadow
     float shadow_softness = 0.75f;  ///< half width of the shadow's filter, texels of its map
     /// Directional: metres around the middle of the view that shadows cover.
     float shadow_extent = 40;
@@ -134,6 +135,7 @@ struct Scene {
     std::vector<Light> lights;
     Surroundings surroundings;
     SceneCamera camera;
+    double flying_speed = 4;          ///< metres per second, at which one gets about in it
     std::vector<NamedCamera> cameras; ///< others to choose from
     std::vector<std::string> losses;  ///< what of the files is not in the scene, a line for each kind
 

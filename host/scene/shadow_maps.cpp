@@ -13,8 +13,8 @@ namespace {
 
 constexpr int map_size = 1024;
 constexpr double widest_spot = 120; ///< degrees; beyond, texels in the middle get too coarse
-/// Near planes of lights scale with the scene: as shares of a directional light's extent and of the viewer's near plane.
-constexpr double nearest_of_extent = 0.0025, nearest_of_view = 0.5;
+/// A directional light's near plane scales with what it covers, which may be a model of a millimetre.
+constexpr double nearest_of_extent = 0.0025;
 
 /// The light as a camera: to view from the light's node, and the projection.
 Camera light_camera(const Light& light, const glm::dmat4& place, const Camera& viewer) {
@@ -36,7 +36,7 @@ Camera light_camera(const Light& light, const glm::dmat4& place, const Camera& v
         camera = Camera::parallel(extent, nearest_of_extent * extent, 4 * extent);
     } else {
         camera = Camera::perspective(std::min(2 * static_cast<double>(light.outer_angle), widest_spot),
-                                     nearest_of_view * viewer.near_plane);
+                                     static_cast<double>(light.shadow_near));
     }
     std::copy_n(glm::value_ptr(frame), 16, camera.view_to_world.begin());
     return camera;

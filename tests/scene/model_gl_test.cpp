@@ -216,11 +216,10 @@ TEST_CASE("texture transforms and the second set of coordinates") {
     CHECK(left_is_green(shown(transform({{"texCoord", 1}}), true)));
     // Turned by 90 degrees red and green lie one above the other.
     const Frame turned = shown(transform({{"rotation", std::acos(0.0)}}), false);
-    std::cout << turned.at(-0.5, 0.5).r << " " << turned.at(-0.5, 0.5).g << " / " << turned.at(0.5, 0.5).r
-              << " " << turned.at(0.5, 0.5).g << " / " << turned.at(0.5, -0.5).r << " / "
-              << turned.at(-0.5, -0.5).r << "\n";
-    CHECK(turned.at(-0.5, 0.5) == turned.at(0.5, 0.5));
-    CHECK(turned.at(0, -0.5) != turned.at(0, 0.5));
+    CHECK(turned.at(-0.5, 0.5).r > 0.5f);
+    CHECK(turned.at(0.5, 0.5).r > 0.5f);
+    CHECK(turned.at(-0.5, -0.5).g > 0.5f);
+    CHECK(turned.at(0.5, -0.5).g > 0.5f);
 }
 
 TEST_CASE("alpha is for MASK and BLEND alone, and vertices have it too") {
