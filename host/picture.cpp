@@ -4,7 +4,6 @@
 
 #include <gl/clock.hpp>
 #include <gl/objects.hpp>
-#include <image/files.hpp>
 
 #include <fmt/format.h>
 
@@ -64,17 +63,17 @@ Output output_for(const std::filesystem::path& file) {
     return is_display_kind(file) ? Output::display : Output::linear;
 }
 
-void write_picture(ChainRunner& runner, const std::filesystem::path& file, bool keep_alpha) {
+std::vector<std::string> write_picture(ChainRunner& runner, const std::filesystem::path& file,
+                                       bool keep_alpha, const WriteOptions& options) {
     const int channels = keep_alpha ? 4 : 3;
-    if (runner.facts().output == Output::linear) {
-        write_image(file, first_channels(runner.executor().read_picture(), channels));
-        return;
-    }
+    if (runner.facts().output == Output::linear)
+        return write_image(file, first_channels(runner.executor().read_picture(), channels), options);
     const Image codes = first_channels(runner.executor().read_picture(), channels);
     BasicImage<std::uint8_t> bytes(codes.width, codes.height, channels);
     std::transform(codes.values.begin(), codes.values.end(), bytes.values.begin(),
                    [](float code) { return static_cast<std::uint8_t>(std::lround(code * 255.0f)); });
-    write_codes(file, bytes);
+    write_codes(file, bytes, options);
+    return {};
 }
 
 ProgressBar::ProgressBar(std::string what, int total)

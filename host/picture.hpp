@@ -1,12 +1,14 @@
 // From a planned chain to a file.
 #pragma once
 
+#include <image/files.hpp>
 #include <postfx/postfx.hpp>
 
 #include <filesystem>
 #include <functional>
 #include <map>
 #include <string>
+#include <vector>
 
 namespace postfx::host {
 
@@ -47,8 +49,10 @@ private:
 /// ending that can't be written.
 Output output_for(const std::filesystem::path& file);
 
-/// Write the last picture of `runner` to `file` by its ending, with 4 channels when `keep_alpha`.
-void write_picture(ChainRunner& runner, const std::filesystem::path& file, bool keep_alpha);
+/// Write the last picture of `runner` to `file` by its ending, with 4 channels when `keep_alpha`. Returns what write_image
+/// does.
+std::vector<std::string> write_picture(ChainRunner& runner, const std::filesystem::path& file,
+                                       bool keep_alpha, const WriteOptions& options = {});
 
 /// A line that grows on a terminal's stderr, or nothing when stderr is no terminal. Finished by its
 /// destructor.

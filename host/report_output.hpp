@@ -16,6 +16,7 @@ namespace postfx::host {
 class ReportOptions {
 public:
     void declare(CLI::App& app);
+    bool quiet() const { return quiet_; }
     bool wants_times() const { return !no_times_ && !quiet_; }
     Watch watch() const { return watch_nonfinite_ ? Watch::nonfinite : Watch::off; }
     /// The report, what the budget bought if there was one, and "wrote FILE"; as JSON {"output": FILE, ...report,

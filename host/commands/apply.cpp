@@ -3,9 +3,11 @@
 #include "command.hpp"
 #include "depth_input.hpp"
 #include "gl_session.hpp"
+#include "layer_input.hpp"
 #include "options.hpp"
 #include "picture.hpp"
 #include "report_output.hpp"
+#include "warnings.hpp"
 
 #include <gl/objects.hpp>
 #include <image/files.hpp>
@@ -38,9 +40,6 @@ public:
             ->required()
             ->type_name("IMG");
         app.add_option("--depth", depth_, "Its depth (EXR, PFM, PNG)")->type_name("IMG");
-        app.add_option("--depth-layer", depth_layer_,
-                       "Channel of an EXR depth (default: Z, depth.Z, or the only one)")
-            ->type_name("LAYER");
         app.add_option("--normal", normal_, "View-space normals; PNG as 0.5 + n/2")->type_name("IMG");
         app.add_option("--emission", emission_, "Light that surfaces emit, part of the picture")
             ->type_name("IMG");
@@ -56,6 +55,8 @@ public:
         app.add_option("--frame", frame_, "Frame number: noise depends on it")->capture_default_str();
         app.add_option("--seed", seed_, "Seed of all noise")->capture_default_str();
         app.add_flag("--no-fuse", no_fuse_, "Let every effect write its own target");
+        app.add_flag("--strict", strict_, "Refuse what would be brought into shape with a warning");
+        layer_options_.declare(app);
         depth_options_.declare(app);
         chain_options_.declare(app);
         catalog_options_.declare(app);
@@ -69,7 +70,10 @@ public:
         const Catalog catalog = catalog_options_.load();
         Chain chain = chain_options_.read(catalog);
 
-        const ImageFile color = read_image(color_);
+        const ImageSource source = open_image(color_);
+        const ImageRequest request = layer_options_.color_request();
+        const ImageFile color = read_image(source, request);
+        tell(color_, color);
         facts.width = color.image.width;
         facts.height = color.image.height;
         facts.color_is_8bit = color.coding.plain_srgb && color.coding.bits == 8;
@@ -77,7 +81,7 @@ public:
         facts.working_format = *format_by_name(working_);
         facts.fuse = !no_fuse_;
         facts.fold = true;
-        std::map<std::string, Image> images = attachments(facts);
+        std::map<std::string, Image> images = attachments(facts, {color_, source, color});
         for (const auto& [name, image] : images)
             facts.attachments.push_back(name);
         images["color"] = widened(color.image);
@@ -101,7 +105,10 @@ public:
         const Textures textures = upload(runner.attachments());
         runner.run(textures, frame, Timing::off, report_options_.watch());
         const bool has_alpha = color.image.channels == 4 || color.image.channels == 2;
-        write_picture(runner, output_, has_alpha);
+        const Origin origin = layer_options_.carries() ? Origin{&source, request} : Origin{};
+        const std::vector<std::string> remarks =
+            write_picture(runner, output_, has_alpha, {.origin = origin});
+        tell_lines(output_, remarks, report_options_.quiet());
         if (report_options_.wants_times())
             runner.run(textures, frame, Timing::profile, report_options_.watch());
         report_options_.tell(runner.executor().report(), budget, output_);
@@ -119,16 +126,27 @@ private:
         return texture.name();
     }
 
+    /// A file in a role; one that holds the colour too is read once, and gives what belongs to that.
+    ImageFile read(Role role, const std::string& file, const ColorInput& color) const {
+        const ImageFile read = layer_options_.read(role, file, color);
+        tell(file, read);
+        return read;
+    }
+
+    void tell(const std::string& file, const ImageFile& read) const {
+        tell_or_refuse(file, read.warnings, strict_, report_options_.quiet());
+    }
+
     /// Everything but the colour, as the core wants it.
-    std::map<std::string, Image> attachments(const Facts& facts) const {
+    std::map<std::string, Image> attachments(const Facts& facts, const ColorInput& color) const {
         std::map<std::string, Image> images;
         if (!depth_.empty()) {
-            const Image depth = read_image(depth_, {.role = Role::depth, .layer = depth_layer_}).image;
+            const Image depth = read(Role::depth, depth_, color).image;
             check_size(depth, depth_, facts);
             images["depth"] = depth_options_.samples(depth, facts.camera);
         }
         if (!normal_.empty()) {
-            const ImageFile file = read_image(normal_, {.role = Role::normal});
+            const ImageFile file = read(Role::normal, normal_, color);
             Image normal = widened(file.image);
             check_size(normal, normal_, facts);
             if (file.coding.numbers == Coding::Numbers::codes) {
@@ -141,7 +159,7 @@ private:
              {std::pair{Role::emission, emission_}, std::pair{Role::ambient, ambient_}}) {
             if (file.empty()) continue;
             Image& image = images[name_of(role)];
-            image = widened(read_image(file, {.role = role}).image);
+            image = widened(read(role, file, color).image);
             check_size(image, file, facts);
         }
         return images;
@@ -153,11 +171,12 @@ private:
                                                      color_, facts.width, facts.height));
     }
 
-    std::string color_, depth_, depth_layer_, normal_, emission_, ambient_, output_;
+    std::string color_, depth_, normal_, emission_, ambient_, output_;
     std::string working_ = "rgba32f";
     double time_ = 0;
     std::uint32_t frame_ = 0, seed_ = 0;
-    bool no_fuse_ = false;
+    bool no_fuse_ = false, strict_ = false;
+    LayerOptions layer_options_;
     DepthOptions depth_options_;
     ChainOptions chain_options_{""};
     CatalogOptions catalog_options_;

@@ -128,7 +128,8 @@ private:
             for (std::size_t i = 0; i < image.pixel_count(); ++i) {
                 std::copy_n(&image.values[4 * i], 3, &rgb.values[3 * i]);
             }
-            return write_image(file, rgb);
+            write_image(file, rgb);
+            return;
         }
         Image depth = gl::read_texture(texture, facts.width, facts.height, Format::depth32f);
         for (float& value : depth.values) {

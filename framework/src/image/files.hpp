@@ -32,6 +32,9 @@ struct ImageRequest {
     std::string
         layer{}; ///< a layer or channel by its name (EXR); "" = by the conventions of the programs that write it
     std::string view{}; ///< a stereo view by its name; "" = the file's default one
+    std::string
+        beside{}; ///< the layer of this file that is taken for the colour: what was rendered with it comes
+                  ///< first (EXR)
     Adaptation adaptation = Adaptation::none;
 };
 
@@ -52,6 +55,9 @@ struct DepthScale {
     double at_zero = 0, at_one = 1; ///< what the samples 0 and 1 stand for, linear between
 };
 
+/// What the axes of a normal are.
+enum class NormalSpace { view, world };
+
 /// What the file says of the camera.
 struct ShotData {
     std::optional<double> focal_length_mm,
@@ -71,6 +77,8 @@ struct ImageFile {
     std::string layer{}, view{}; ///< what was taken, "" where the file has only one
     ShotData shot{};
     std::optional<DepthScale> depth_scale{}; ///< role depth only
+    std::optional<NormalSpace>
+        normal_space{};                  ///< role normal only: by the layer's name, or who wrote the file
     std::vector<std::string> honoured{}; ///< what the file says of its pixels and was followed, one line each
     std::vector<std::string> warnings{}; ///< what was brought into shape or had to be left out, one line each
 };
@@ -85,8 +93,18 @@ ImageFile read_image(const std::filesystem::path& file, const ImageRequest& requ
 /// What is in the file, without its pixels, and what would be taken in which role.
 ImageDescription describe_image(const ImageSource& source);
 
+/// The file that a picture was taken from, and how it was asked for.
+struct Origin {
+    const ImageSource* source = nullptr;
+    ImageRequest request{};
+};
+
 /// How a file is written.
 struct WriteOptions {
+    /// .exr: write the origin, if it is an EXR, with the picture in place of the one that was taken: other layers,
+    /// parts, views, windows and attributes stay as they are, bit for bit, and so do pixels that have not changed.
+    /// `half` is then ignored: channels keep their types.
+    Origin origin{};
     bool half = false;     ///< .exr: half instead of float; beyond 65504 becomes infinity
     int bits = 8;          ///< .png: 8 or 16
     double quality = 0.92; ///< .jpg: 0..1
@@ -98,8 +116,10 @@ void write_codes(const std::filesystem::path& file, const BasicImage<std::uint8_
 
 /// By ending: .exr, .pfm: 1 to 4 channels of float, bits kept; .hdr: 8 bits of mantissa, nothing negative; .png, .jpg:
 /// sRGB-encoded and rounded, clamped to [0, 1], NaN is 0. HDR, PFM and JPEG have no alpha: it is left out. Written
-/// beside and renamed, so an existing file is never left half-written. Throws Error naming the file.
-void write_image(const std::filesystem::path& file, const Image& image, const WriteOptions& options = {});
+/// beside and renamed, so an existing file is never left half-written. Throws Error naming the file. Returns what could
+/// not be kept of the origin, one line each.
+std::vector<std::string> write_image(const std::filesystem::path& file, const Image& image,
+                                     const WriteOptions& options = {});
 
 /// Is `file`'s ending one that write_image knows? Throws Error (naming the endings) if not.
 void check_writable_kind(const std::filesystem::path& file);

@@ -28,6 +28,10 @@ constexpr long long max_pixels = 1LL << 28;
 /// Throws Error unless 1 <= width, height <= max_side and there are at most max_pixels.
 void check_size(const Path& file, long long width, long long height);
 
+/// Throws Error if so few bytes can't be a picture of so many pixels: a small file must not ask for all memory. What an
+/// 8K display shows is always allowed; beyond that, no coding packs more than 2^15 equal pixels into a byte.
+void check_plausible(const ImageSource& source, long long pixels);
+
 /// The file's rows the other way up. Every format but PFM counts them from the top.
 template<class Number>
 BasicImage<Number> upside_down(const BasicImage<Number>& image) {
@@ -83,5 +87,10 @@ std::string pfm_bytes(const Image& image);
 
 /// Channels Y, YA, RGB or RGBA; half or float.
 std::string exr_bytes(const Path& file, const Image& image, bool half);
+
+/// The origin, an EXR, with `image` (3 or 4 channels, Rec. 709) where its picture was; see WriteOptions. Adds to `remarks`
+/// what could not be kept.
+std::string exr_bytes_carrying(const Path& file, const Image& image, const Origin& origin,
+                               std::vector<std::string>& remarks);
 
 } // namespace postfx::formats

@@ -118,8 +118,15 @@ std::string encoded_codes(const Path& file, const BasicImage<std::uint8_t>& code
                                options.quality);
 }
 
-std::string encoded(const Path& file, const Image& image, const WriteOptions& options) {
+bool carries(const WriteOptions& options) {
+    return options.origin.source && formats::exr.recognises(options.origin.source->bytes);
+}
+
+std::string encoded(const Path& file, const Image& image, const WriteOptions& options,
+                    std::vector<std::string>& remarks) {
     const std::string ending = ending_of(file);
+    if (ending == ".exr" && carries(options))
+        return formats::exr_bytes_carrying(file, image, options.origin, remarks);
     if (ending == ".png" && options.bits == 16)
         return formats::png_bytes(file, display_codes<std::uint16_t>(image));
     if (is_display_kind(file)) return encoded_codes(file, display_codes<std::uint8_t>(image), options);
@@ -148,10 +155,13 @@ void write_codes(const std::filesystem::path& file, const BasicImage<std::uint8_
     write_file_atomically(file, encoded_codes(file, codes, options));
 }
 
-void write_image(const std::filesystem::path& file, const Image& image, const WriteOptions& options) {
+std::vector<std::string> write_image(const std::filesystem::path& file, const Image& image,
+                                     const WriteOptions& options) {
     check_writable_kind(file);
     check_image(file, image.width, image.height, image.channels, image.values.size());
-    write_file_atomically(file, encoded(file, image, options));
+    std::vector<std::string> remarks;
+    write_file_atomically(file, encoded(file, image, options, remarks));
+    return remarks;
 }
 
 void write_file_atomically(const std::filesystem::path& file, const std::string& bytes) {

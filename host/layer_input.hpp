@@ -1,0 +1,38 @@
+// Which layer and view of image files serve as what.
+#pragma once
+
+#include <image/files.hpp>
+
+#include <CLI/CLI.hpp>
+
+#include <map>
+#include <string>
+
+namespace postfx::host {
+
+/// The picture, which other roles belong to.
+struct ColorInput {
+    const std::string& name; ///< as the user called the file
+    const ImageSource& source;
+    const ImageFile& file;
+};
+
+/// --color-layer and the like, --view, --adapt, --only-picture.
+class LayerOptions {
+public:
+    void declare(CLI::App& app);
+
+    ImageRequest color_request() const;
+    /// `file` in `role`: in the view of the colour if the file has views, and if it is the colour's own file, of what was
+    /// rendered with it. Throws what read_image throws.
+    ImageFile read(Role role, const std::string& file, const ColorInput& color) const;
+    /// Does an EXR go out with all that was in it?
+    bool carries() const { return !only_picture_; }
+
+private:
+    std::map<Role, std::string> layers_;
+    std::string view_, adaptation_ = "none";
+    bool only_picture_ = false;
+};
+
+} // namespace postfx::host
