@@ -228,3 +228,91 @@ TEST_CASE("JPEG files of ours are sRGB by profile, and the same every time") {
     write_image(directory / "g.jpg", Image(16, 8, 1, 0.5f));
     check_codes(read_image(directory / "g.jpg"), {188});
 }
+
+namespace {
+
+std::string base64(const std::string& bytes) {
+    static const char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    std::string text;
+    for (std::size_t i = 0; i < bytes.size(); i += 3) {
+        std::uint32_t three = 0;
+        for (std::size_t j = i; j < i + 3; ++j)
+            three = three << 8 | (j < bytes.size() ? static_cast<std::uint8_t>(bytes[j]) : 0u);
+        for (std::size_t j = 0; j < 4; ++j)
+            text += i + j <= bytes.size() ? digits[three >> (18 - 6 * j) & 63] : '=';
+    }
+    return text;
+}
+
+std::string xmp_segment(const std::string& xmp) {
+    return segment(0xe1, std::string("http://ns.adobe.com/xap/1.0/\0", 29) + xmp);
+}
+
+std::string grey_map() {
+    return jpeg_of({51}, JCS_GRAYSCALE, {});
+}
+
+/// 16 x 8, every sample 0.2.
+void check_map(const ImageFile& depth, DepthScale::Kind kind, double at_zero, double at_one) {
+    REQUIRE((depth.image.channels == 1 && depth.image.pixel_count() == 16 * 8));
+    CHECK(depth.image.values[0] == Approx(0.2).margin(1.1 / 255));
+    REQUIRE(depth.depth_scale);
+    CHECK(depth.depth_scale->kind == kind);
+    CHECK(depth.depth_scale->at_zero == Approx(at_zero));
+    CHECK(depth.depth_scale->at_one == Approx(at_one));
+}
+
+} // namespace
+
+TEST_CASE("JPEG: the depth that Google's camera writes") {
+    for (const std::string format : {"RangeLinear", "RangeInverse"}) {
+        const std::string range = "GDepth:Format=\"" + format + "\" GDepth:Near=\"0.5\" GDepth:Far=\"4\" ";
+        // The map lies in the extension, in two pieces.
+        const std::string data = "GDepth:Data=\"" + base64(grey_map()) + "\"";
+        const auto piece = [](const std::string& text) {
+            return segment(0xe1, std::string("http://ns.adobe.com/xmp/extension/\0", 35)
+                                     + std::string(40, 'x') + text);
+        };
+        const std::string bytes =
+            with_segments(red(), exif_segment(6, 1) + xmp_segment(range) + piece(data.substr(0, 100))
+                                     + piece(data.substr(100)));
+        const ImageFile depth = read_jpeg(bytes, Role::depth);
+        if (format == "RangeLinear")
+            check_map(depth, DepthScale::Kind::metres, 0.5, 4);
+        else
+            check_map(depth, DepthScale::Kind::dioptres, 2, 0.25);
+        CHECK(depth.image.width == 8); // turned with the photograph
+        check_codes(read_jpeg(bytes), {200, 60, 30});
+    }
+    CHECK_THROWS_AS(read_jpeg(with_segments(red(), xmp_segment("GDepth:Data=\"???\"")), Role::depth), Error);
+}
+
+TEST_CASE("JPEG: Dynamic Depth") {
+    const std::string map = grey_map();
+    const std::string xmp =
+        "DepthMap:Format=\"RangeInverse\" DepthMap:Near=\"1\" DepthMap:Far=\"10\""
+        "<Container:Directory><Container:Item Item:Semantic=\"Primary\" Item:Length=\"0\"/>"
+        "<Container:Item Item:Semantic=\"Depth\" Item:Length=\""
+        + std::to_string(map.size()) + "\"/><Container:Item Item:Semantic=\"Other\" Item:Length=\"4\"/>";
+    check_map(read_jpeg(with_segments(red(), xmp_segment(xmp)) + map + "abcd", Role::depth),
+              DepthScale::Kind::dioptres, 1, 0.1);
+}
+
+TEST_CASE("JPEG: the second picture of a phone's export that says it is disparity") {
+    const std::string map =
+        with_segments(grey_map(), xmp_segment("<apdi:AuxiliaryImageType>disparity</apdi:AuxiliaryImageType>"
+                                              "<apdi:FloatMinValue>0.25</apdi:FloatMinValue>"
+                                              "<apdi:FloatMaxValue>4</apdi:FloatMaxValue>"));
+    const auto index = [&](std::size_t offset) {
+        return segment(0xe2, std::string("MPF\0II*\0", 8) + little(8, 4) + little(1, 2)
+                                 + field(0xb002, 7, 32, 26) + little(0, 4) + std::string(16, '\0')
+                                 + little(0, 4) + little(static_cast<std::uint32_t>(map.size()), 4)
+                                 + little(static_cast<std::uint32_t>(offset), 4) + little(0, 4));
+    };
+    const std::size_t whole = with_segments(red(), index(0)).size();
+    // Offsets count from behind "MPF" and its end, 10 bytes into the file.
+    check_map(read_jpeg(with_segments(red(), index(whole - 10)) + map, Role::depth),
+              DepthScale::Kind::dioptres, 0.25, 4);
+    // Nonsense leaves the photograph as the map.
+    CHECK(read_jpeg(with_segments(red(), index(0xffffffff)) + map, Role::depth).image.channels == 3);
+}

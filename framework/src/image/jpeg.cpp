@@ -1,6 +1,8 @@
 // JPEG, by libjpeg-turbo.
 #include <image/c_errors.hpp>
+#include <image/jpeg_depth.hpp>
 #include <image/jpeg_file.hpp>
+#include <image/orientation.hpp>
 #include <image/stored_picture.hpp>
 
 #include <fmt/format.h>
@@ -158,8 +160,22 @@ bool recognises_jpeg(std::string_view bytes) {
     return bytes.starts_with("\xff\xd8\xff");
 }
 
+/// The depth map inside of a photograph, turned as the photograph is; nothing if it has none.
+std::optional<ImageFile> depth_of_photograph(const ImageSource& source) {
+    const std::vector<JpegSegment> segments = jpeg_segments(source.name, source.bytes);
+    std::optional<ImageFile> depth = depth_in_jpeg(source, segments);
+    if (!depth) return std::nullopt;
+    StoredPicture statements;
+    take_color(statements, segments);
+    depth->image = oriented(depth->image, statements.orientation);
+    depth->shot.orientation = statements.orientation;
+    return depth;
+}
+
 ImageFile read_jpeg(const ImageSource& source, const ImageRequest& request) {
     expect_no_layers(source, request);
+    if (request.role == Role::depth)
+        if (std::optional<ImageFile> depth = depth_of_photograph(source)) return *std::move(depth);
     return as_asked(stored_jpeg(source), request);
 }
 
