@@ -148,7 +148,7 @@ TEST_CASE("An off-centre projection is the part of a larger picture") {
     half[8] = 1;
     shifted[8] = 0.5;
     const std::string vignette = "vignette: {strength: 1}";
-    for (const std::string& kind : {"window-reversed-infinite", "z", "distance"}) {
+    for (const char* kind : {"window-reversed-infinite", "z", "distance"}) {
         const std::vector<std::string> arguments = {"--depth", "z.pfm", "--depth-kind", kind};
         const Image there = test.picture(vignette, with_matrix(arguments, centred));
         const Image moved = test.picture(vignette, with_matrix(arguments, shifted));

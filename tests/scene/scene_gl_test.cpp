@@ -277,10 +277,12 @@ TEST_CASE("an off-centre camera draws the part of a larger picture") {
     for (const char* lens : {"vertical_fov: 60", "orthographic_extent: 4, far: 50"}) {
         SceneRenderer drawn =
             renderer("camera: {position: [0, 1, 4], look_at: [0, 0.5, 0], " + std::string(lens)
-                     + "}\nnodes:\n"
-                       "  - {name: ball, sphere: {radius: 0.8}, position: [0.9, 0.6, 0]}\n"
-                       "  - {name: floor, plane: {size: 20}}\n");
-        Camera camera = drawn.scene().camera_at(0);
+                     + "}\n"
+                       "materials: {white: {diffuse: 1, specular: 0}}\n"
+                       "nodes:\n"
+                       "  - {position: [0.9, 0.6, 0], mesh: {sphere: {radius: 0.8}}, material: white}\n"
+                       "  - {mesh: {plane: {size: [20, 20]}}, material: white}\n");
+        postfx::Camera camera = drawn.scene().camera_at(0);
         const Image whole =
             read(drawn.render(wide, high, 0, {"depth"}, CameraOverride{camera, {}}), "depth", wide, high);
         camera.principal_point = {-1, 0}; // the axis lies on the left border of the right half
