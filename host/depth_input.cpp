@@ -27,6 +27,11 @@ double degrees(double radians) {
     return radians * 180 / std::numbers::pi;
 }
 
+/// Linear, beyond 0..1 too. NaN for NaN, which std::lerp makes a number of.
+double between(double at_zero, double at_one, double sample) {
+    return at_zero + (at_one - at_zero) * sample;
+}
+
 /// Samples of parallel views that are z itself; no place has z = 0, so it can mean "nothing".
 Camera with_metres_as_samples(Camera camera) {
     camera.near_plane = 0;
@@ -185,11 +190,11 @@ Camera DepthOptions::projected_camera(int width, int height) const {
 double DepthOptions::metres(double sample, const ImageFile& depth) const {
     const double unit = depth_unit_.value_or(1);
     if (depth.depth_scale && given_kind_->count() == 0) {
-        const double number = std::lerp(depth.depth_scale->at_zero, depth.depth_scale->at_one, sample);
+        const double number = between(depth.depth_scale->at_zero, depth.depth_scale->at_one, sample);
         return depth.depth_scale->kind == DepthScale::Kind::metres ? number : 1 / number;
     }
     if (kind_ == "inverse") return unit / sample;
-    if (kind_ == "disparity") return 1 / std::lerp(disparity_range_[0], disparity_range_[1], sample);
+    if (kind_ == "disparity") return 1 / between(disparity_range_[0], disparity_range_[1], sample);
     return unit * sample;
 }
 
