@@ -176,7 +176,14 @@ ImageFile read_jpeg(const ImageSource& source, const ImageRequest& request) {
     expect_no_layers(source, request);
     if (request.role == Role::depth)
         if (std::optional<ImageFile> depth = depth_of_photograph(source)) return *std::move(depth);
-    return as_asked(stored_jpeg(source), request);
+    ImageFile file = as_asked(stored_jpeg(source), request);
+    if (request.role != Role::color) return file;
+    try {
+        file.has_depth_map = depth_in_jpeg(source, jpeg_segments(source.name, source.bytes)).has_value();
+    } catch (const Error& error) {
+        file.warnings.push_back("its depth map is left out: " + error.message());
+    }
+    return file;
 }
 
 ImageDescription describe_jpeg(const ImageSource& source) {
