@@ -9,6 +9,7 @@
 #include <functional>
 #include <limits>
 #include <numbers>
+#include <string_view>
 #include <vector>
 
 namespace postfx::testing {
@@ -18,6 +19,10 @@ inline constexpr float not_a_number = std::numeric_limits<float>::quiet_NaN();
 inline constexpr double nowhere = std::numeric_limits<double>::infinity();
 
 enum Level { low, medium, high, ultra, best, classic };
+constexpr std::string_view word_of(Level level) {
+    constexpr std::string_view words[] = {"low", "medium", "high", "ultra", "reference", "classic"};
+    return words[level];
+}
 inline constexpr std::array approximations = {low, medium, high, ultra, best};
 
 using Vector = std::array<double, 3>;
