@@ -3,7 +3,7 @@
 #   postfx_add_effect(), postfx_warnings()
 #   postfx::plugin_headers   what an effect needs: headers only
 #   postfx::postfx           the embedding library
-#   postfx::testing          the harness of effects' tests
+#   postfx::testing          the harness of effects' tests, and
 #   postfx::gl_test_main     its main()
 include(CMakePackageConfigHelpers)
 
@@ -30,6 +30,7 @@ foreach(target ${libraries} postfx_plugin_headers)
   endif()
 endforeach()
 postfx_set_installed_headers(postfx_testing "include;include/postfx_testing")
+install(DIRECTORY tests/harness/ DESTINATION include/postfx_testing FILES_MATCHING PATTERN "*.hpp")
 
 # Two exports, because an effect can be built on a machine that has none of the library's dependencies.
 install(TARGETS postfx_plugin_headers EXPORT postfx-plugin-targets)
@@ -39,6 +40,11 @@ foreach(export postfx-plugin-targets postfx-library-targets)
   install(EXPORT ${export} NAMESPACE postfx:: DESTINATION ${config_dir})
 endforeach()
 
+# Everything that `cmake --install` copies and that effects elsewhere link with: what ./run builds.
+add_custom_target(postfx_installed)
+add_dependencies(postfx_installed postfx_program postfx_effects ${libraries})
+
+set(POSTFX_LIBRARY_DEPENDENCIES "fmt OpenEXR yaml-cpp nlohmann_json OpenGL Catch2")
 # The same file for both; only the place of our CMake functions differs.
 set(POSTFX_FUNCTIONS_DIR ${PROJECT_SOURCE_DIR}/cmake)
 configure_file(cmake/postfx-config.cmake.in ${PROJECT_BINARY_DIR}/postfx-config.cmake @ONLY)
@@ -49,7 +55,6 @@ install(FILES ${PROJECT_BINARY_DIR}/installed/postfx-config.cmake ${PROJECT_BINA
               cmake/postfx_add_effect.cmake cmake/plugin_exports.map cmake/postfx_warnings.cmake cmake/embed_glsl.cmake
         DESTINATION ${config_dir})
 install(DIRECTORY framework/include/postfx DESTINATION include)
-install(DIRECTORY tests/harness/ DESTINATION include/postfx_testing FILES_MATCHING PATTERN "*.hpp")
 
 # The program finds its effects and data from its own place (catalog.hpp, host/resources.hpp).
 file(STRINGS framework/include/postfx/plugin.h abi_major REGEX "^#define POSTFX_ABI_MAJOR ")

@@ -1,4 +1,4 @@
-# What ./run and ./test share: packages, configuration, build. Sourced from the repository's root.
+# What ./run, ./test and .ci/run share: packages, configuration, build. Sourced from the repository's root.
 
 fail() {
   printf '%s: %s\n' "${0##*/}" "$*" >&2
@@ -36,10 +36,18 @@ quietly() {
   fi
 }
 
+# packages_of SECTION...: the names in these sections of packages.txt, sorted.
+packages_of() {
+  awk -v wanted=" $* " '
+    /^# \[/ { section = substr($2, 2, length($2) - 2) }
+    /^[^#]/ && index(wanted, " " section " ") { print $1 }' packages.txt | sort -u
+}
+
+# install_packages SECTION...: what is missing of these sections of packages.txt.
 install_packages() {
   local wanted present missing
   local -a as_root=()
-  wanted=$(sed 's/#.*//' packages.txt | xargs -n 1 | sort -u)
+  wanted=$(packages_of "$@")
   command -v dpkg-query >/dev/null ||
     fail "can install packages on Debian and its relatives only; elsewhere install what packages.txt names" \
       "by other means, then: cmake --preset release && cmake --build --preset release"
@@ -63,11 +71,31 @@ install_packages() {
     apt-get install --yes --no-install-recommends -o DPkg::Lock::Timeout=300 $missing
 }
 
-# build TARGET...: configure if that was never done (ninja does it again when it must), then build.
-build() {
-  if [[ ! -f build/build.ninja ]]; then
-    say "Configuring (build/)"
-    quietly "cmake" cmake --preset release
+# configure PRESET CMAKE_ARGUMENT...: its build directory, if that was never done or done with other values of the
+# arguments (-DNAME=VALUE); for anything else ninja does it again when it must.
+configure() {
+  local preset=$1 directory argument
+  shift
+  directory=$(build_directory "$preset")
+  if [[ -f $directory/build.ninja ]]; then
+    local is_same=true
+    for argument in "$@"; do
+      grep -q -- "^${argument/#-D/}$" <(sed 's/:[A-Z]*=/=/' "$directory/CMakeCache.txt") || is_same=false
+    done
+    if $is_same; then return; fi
   fi
-  quietly "the build" ninja -C build -j "$(nproc)" "$@"
+  say "Configuring ($directory/)"
+  quietly "cmake" cmake --preset "$preset" "$@"
+}
+
+# Where CMakePresets.json puts a preset's build.
+build_directory() {
+  if [[ $1 == release ]]; then echo build; else echo "build-$1"; fi
+}
+
+# build PRESET TARGET...
+build() {
+  local preset=$1
+  shift
+  quietly "the build" ninja -C "$(build_directory "$preset")" -j "$(nproc)" "$@"
 }

@@ -2,12 +2,18 @@
 
 #include "resources.hpp"
 
+#include <image/files.hpp>
+
 #include <postfx/error.hpp>
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cctype>
 #include <charconv>
 #include <cstdio>
+
+#include <unistd.h>
 
 namespace postfx::host {
 
@@ -71,16 +77,52 @@ Chain read_chain_named(const std::string& name_or_path, const Catalog& catalog) 
     return read_chain(find_chain(name_or_path), catalog, {data_directory() / "configs/chains"});
 }
 
+void OutputOptions::declare(CLI::App& app, const std::string& help) {
+    app.add_option("-o,--output", path_, help + "; - is standard output")->required()->type_name("FILE");
+    app.add_option("--format", kind_, "Kind of picture, whatever FILE is called: png, jpg, exr, hdr or pfm")
+        ->type_name("KIND")
+        ->default_str("");
+    app.add_option("--bits", bits_, "Per channel of a PNG")
+        ->check(CLI::IsMember({8, 16}))
+        ->capture_default_str();
+    app.add_option("--quality", quality_, "Of a JPEG, 0 to 1")
+        ->check(CLI::Range(0.0, 1.0))
+        ->capture_default_str();
+}
+
+std::string kind_of(const PictureFile& file) {
+    std::string kind = file.kind.empty() ? file.path.extension().string() : "." + file.kind;
+    std::transform(kind.begin(), kind.end(), kind.begin(),
+                   [](unsigned char letter) { return static_cast<char>(std::tolower(letter)); });
+    return kind == ".jpeg" ? "jpg" : kind.substr(std::min<std::size_t>(1, kind.size()));
+}
+
+PictureFile OutputOptions::file() const {
+    const bool standard_output = path_ == "-" || path_ == "/dev/stdout" || path_ == "/dev/fd/1";
+    const PictureFile file{standard_output ? "-" : path_, kind_, bits_, quality_};
+    if (standard_output && kind_.empty())
+        throw Error("--format is needed for a picture on standard output, which has no ending: png, jpg, "
+                    "exr, hdr or pfm");
+    if (standard_output && ::isatty(STDOUT_FILENO) != 0)
+        throw Error("standard output is a terminal, which shows no picture; send it to a file or a program");
+    check_writable_kind(file.path, file.kind);
+    if (bits_ == 16 && kind_of(file) != "png") throw Error("--bits 16 is for a PNG");
+    check_output_folder(file.path);
+    return file;
+}
+
 Size parse_size(const std::string& text) {
+    constexpr int largest_side = 32768; // as of image files; a device that has less says so itself
     Size size;
     const std::size_t x = text.find('x');
     const auto read = [&](std::size_t from, std::size_t to, int& number) {
         const auto result = std::from_chars(text.data() + from, text.data() + to, number);
-        return result.ec == std::errc() && result.ptr == text.data() + to && number >= 1 && number <= 16384;
+        return result.ec == std::errc() && result.ptr == text.data() + to && number >= 1
+               && number <= largest_side;
     };
     if (x == std::string::npos || !read(0, x, size.width) || !read(x + 1, text.size(), size.height)) {
-        throw Error(
-            fmt::format("size \"{}\" is not WIDTHxHEIGHT with sides of 1 to 16384, such as 1280x720", text));
+        throw Error(fmt::format("size \"{}\" is not WIDTHxHEIGHT with sides of 1 to {}, such as 1280x720",
+                                text, largest_side));
     }
     return size;
 }

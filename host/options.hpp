@@ -6,6 +6,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -55,7 +56,35 @@ private:
 /// A chain by its file or its name in configs/chains/; it may include those that are there.
 Chain read_chain_named(const std::string& name_or_path, const Catalog& catalog);
 
-/// "1280x720". Throws Error for anything else, or a side of 0 or above 16384.
+/// Where a picture is written, and as what kind of file.
+struct PictureFile {
+    std::filesystem::path path;
+    std::string kind{};    ///< "png", "exr", ...; "" = as the path's ending says
+    int bits = 8;          ///< of a PNG
+    double quality = 0.92; ///< of a JPEG, 0..1
+
+    /// Then nothing else may be printed there.
+    bool is_standard_output() const { return path == "-"; }
+};
+
+/// "png", "exr", ...: the kind that is asked for, else the path's ending in small letters; jpeg is jpg.
+std::string kind_of(const PictureFile& file);
+
+/// -o, --format, --bits and --quality.
+class OutputOptions {
+public:
+    /// `help`: of -o; the kinds of files and "-" are told behind it.
+    void declare(CLI::App& app, const std::string& help);
+    /// Throws Error for a kind that can't be written, a folder that is not there, and standard output on a terminal.
+    PictureFile file() const;
+
+private:
+    std::string path_, kind_;
+    int bits_ = 8;
+    double quality_ = 0.92;
+};
+
+/// "1280x720". Throws Error for anything else, or a side of 0 or above 32768.
 struct Size {
     int width = 0, height = 0;
 };

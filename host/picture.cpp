@@ -4,6 +4,7 @@
 
 #include <gl/clock.hpp>
 #include <gl/objects.hpp>
+#include <image/alpha.hpp>
 #include <image/files.hpp>
 
 #include <fmt/format.h>
@@ -59,22 +60,36 @@ std::uint32_t ChainRunner::run(const Textures& textures, const FrameInputs& fram
     return executor_.run(inputs_, timing, watch);
 }
 
-Output output_for(const std::filesystem::path& file) {
-    check_writable_kind(file);
-    return is_display_kind(file) ? Output::display : Output::linear;
+Output output_for(const PictureFile& file) {
+    check_writable_kind(file.path, file.kind);
+    // 16 bits are encoded on the CPU, from floats: they need no dither.
+    return is_display_kind(file.path, file.kind) && file.bits == 8 ? Output::display : Output::linear;
 }
 
-void write_picture(ChainRunner& runner, const std::filesystem::path& file, bool keep_alpha) {
-    const int channels = keep_alpha ? 4 : 3;
+bool divides_by_alpha(const PictureFile& file, const Written& written) {
+    return output_for(file) == Output::display && written.alpha_of_chain == Coding::Alpha::premultiplied
+           && written.alpha_of_file == Coding::Alpha::straight;
+}
+
+std::vector<std::string> write_picture(ChainRunner& runner, const PictureFile& file, const Written& written) {
+    const bool keeps_alpha =
+        written.alpha_of_chain != Coding::Alpha::none && written.alpha_of_file != Coding::Alpha::none;
+    Image picture = first_channels(runner.executor().read_picture(), keeps_alpha ? 4 : 3);
+    WriteOptions options;
+    options.kind = file.kind;
+    options.bits = file.bits;
+    options.quality = file.quality;
+    if (written.origin.source) options.origin = &written.origin;
     if (runner.facts().output == Output::linear) {
-        write_image(file, first_channels(runner.executor().read_picture(), channels));
-        return;
+        if (keeps_alpha)
+            picture = with_alpha(std::move(picture), written.alpha_of_chain, written.alpha_of_file);
+        return write_image(file.path, picture, options);
     }
-    const Image codes = first_channels(runner.executor().read_picture(), channels);
-    BasicImage<std::uint8_t> bytes(codes.width, codes.height, channels);
-    std::transform(codes.values.begin(), codes.values.end(), bytes.values.begin(),
+    BasicImage<std::uint8_t> codes(picture.width, picture.height, picture.channels);
+    std::transform(picture.values.begin(), picture.values.end(), codes.values.begin(),
                    [](float code) { return static_cast<std::uint8_t>(std::lround(code * 255.0f)); });
-    write_codes(file, bytes);
+    write_codes(file.path, codes, options);
+    return {};
 }
 
 ProgressBar::ProgressBar(std::string what, int total)

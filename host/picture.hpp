@@ -1,6 +1,10 @@
 // From a planned chain to a file.
 #pragma once
 
+#include "options.hpp"
+
+#include <image/files.hpp>
+
 #include <postfx/postfx.hpp>
 
 #include <filesystem>
@@ -43,12 +47,24 @@ private:
     FrameInputs inputs_;
 };
 
-/// What the file's ending asks of the chain: codes for .png, linear light for the others. Throws Error for an
-/// ending that can't be written.
-Output output_for(const std::filesystem::path& file);
+/// What the file's kind asks of the chain: codes for PNG, linear light for the others. Throws Error for a kind that
+/// can't be written.
+Output output_for(const PictureFile& file);
 
-/// Write the last picture of `runner` to `file` by its ending, with 4 channels when `keep_alpha`.
-void write_picture(ChainRunner& runner, const std::filesystem::path& file, bool keep_alpha);
+/// What of a picture goes into its file besides its light.
+struct Written {
+    Coding::Alpha alpha_of_chain =
+        Coding::Alpha::none; ///< of what the chain was given; none: there is no alpha
+    Coding::Alpha alpha_of_file = Coding::Alpha::none; ///< none: it is left out
+    Origin origin{}; ///< the file that the picture is from: an EXR goes back into it
+};
+
+/// Does the chain's last pass have to divide by alpha (Facts::divide_by_alpha)?
+bool divides_by_alpha(const PictureFile& file, const Written& written);
+
+/// Write the last picture of `runner` to `file` by its kind. Returns what could not be kept of the origin, a line each.
+std::vector<std::string> write_picture(ChainRunner& runner, const PictureFile& file,
+                                       const Written& written = {});
 
 /// A line that grows on a terminal's stderr, or nothing when stderr is no terminal. Finished by its
 /// destructor.

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <cstdio>
+
 namespace postfx::host {
 
 void ReportOptions::declare(CLI::App& app) {
@@ -14,16 +16,18 @@ void ReportOptions::declare(CLI::App& app) {
 }
 
 void ReportOptions::tell(const Report& report, const std::optional<MetBudget>& budget,
-                         const std::filesystem::path& output) const {
+                         const PictureFile& output) const {
     if (quiet_) return;
+    std::FILE* stream = output.is_standard_output() ? stderr : stdout;
+    const std::string name = output.is_standard_output() ? "standard output" : output.path.string();
     if (json_) {
-        nlohmann::ordered_json json = {{"output", output.string()}};
+        nlohmann::ordered_json json = {{"output", name}};
         json.update(nlohmann::ordered_json::parse(report_json(report)));
         if (budget) json["budget"] = nlohmann::ordered_json::parse(budget->json());
-        fmt::print("{}\n", json.dump(2));
+        fmt::print(stream, "{}\n", json.dump(2));
         return;
     }
-    fmt::print("{}{}wrote {}\n", report_text(report), budget ? budget->text() : "", output.string());
+    fmt::print(stream, "{}{}wrote {}\n", report_text(report), budget ? budget->text() : "", name);
 }
 
 } // namespace postfx::host

@@ -2,12 +2,12 @@
 #pragma once
 
 #include "budget.hpp"
+#include "options.hpp"
 
 #include <postfx/executor.hpp>
 
 #include <CLI/CLI.hpp>
 
-#include <filesystem>
 #include <string>
 
 namespace postfx::host {
@@ -16,12 +16,12 @@ namespace postfx::host {
 class ReportOptions {
 public:
     void declare(CLI::App& app);
+    bool quiet() const { return quiet_; }
     bool wants_times() const { return !no_times_ && !quiet_; }
     Watch watch() const { return watch_nonfinite_ ? Watch::nonfinite : Watch::off; }
     /// The report, what the budget bought if there was one, and "wrote FILE"; as JSON {"output": FILE, ...report,
-    /// "budget": ...}.
-    void tell(const Report& report, const std::optional<MetBudget>& budget,
-              const std::filesystem::path& output) const;
+    /// "budget": ...}. On stderr when the picture went to stdout.
+    void tell(const Report& report, const std::optional<MetBudget>& budget, const PictureFile& output) const;
 
 private:
     bool json_ = false, quiet_ = false, no_times_ = false, watch_nonfinite_ = false;

@@ -35,10 +35,9 @@ std::vector<std::string> chain_names() {
 }
 
 fs::path find_chain(const std::string& name_or_path) {
-    if (fs::is_regular_file(name_or_path)) return name_or_path;
-    const bool is_path =
-        name_or_path.find('/') != std::string::npos || fs::path(name_or_path).has_extension();
-    if (is_path) throw Error(Place{.file = name_or_path}, "no such file");
+    const bool looks_like_path = name_or_path == "-" || name_or_path.find('/') != std::string::npos
+                                 || fs::path(name_or_path).has_extension();
+    if (looks_like_path || (fs::exists(name_or_path) && !fs::is_directory(name_or_path))) return name_or_path;
     fs::path named = data_directory() / "configs/chains" / (name_or_path + ".yaml");
     if (fs::is_regular_file(named)) return named;
     throw Error(fmt::format("no chain \"{}\"{} (postfx list chains tells them all)", name_or_path,

@@ -14,7 +14,8 @@ std::filesystem::path data_directory();
 /// Names of the chains in configs/chains/, sorted.
 std::vector<std::string> chain_names();
 
-/// A path that exists as it is, or the file of a name in configs/chains/. Throws Error with the nearest name.
+/// "-" and what is or looks like a path as it is, readable or not; else the file of a name in configs/chains/. Throws
+/// Error with the nearest name.
 std::filesystem::path find_chain(const std::string& name_or_path);
 
 /// Where programs and other things that can be made again are kept: $XDG_CACHE_HOME/postfx or

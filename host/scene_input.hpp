@@ -17,6 +17,10 @@
 
 namespace postfx::host {
 
+/// What the user means by SCENE, its models read in a process of their own. What they could not bring along is told on
+/// stderr, one line for each kind; `strict`: refused instead. Throws Error.
+Scene open_known_scene(const std::string& scene, bool strict = false, const std::string& camera = {});
+
 class SceneOptions {
 public:
     /// `default_scene` empty: SCENE must be given.
@@ -30,10 +34,10 @@ public:
     Facts facts(const Scene& scene, ViewBounds& bounds, Output output) const;
 
 private:
-    std::string default_scene_, scene_;
+    std::string default_scene_, scene_, camera_;
     std::string size_ = "1280x720";
     double time_ = 0;
-    bool no_fuse_ = false;
+    bool no_fuse_ = false, strict_ = false;
 };
 
 /// What is known of a picture by a scene's own camera before it is drawn.

@@ -1,14 +1,16 @@
 // postfx apply: a chain on images that someone else made.
 #include "budget.hpp"
 #include "command.hpp"
-#include "depth_input.hpp"
 #include "gl_session.hpp"
+#include "number_checks.hpp"
 #include "options.hpp"
 #include "picture.hpp"
+#include "picture_input.hpp"
 #include "report_output.hpp"
+#include "warnings.hpp"
 
 #include <gl/objects.hpp>
-#include <image/files.hpp>
+#include <image/alpha.hpp>
 
 #include <fmt/format.h>
 
@@ -17,69 +19,52 @@
 namespace postfx::host {
 namespace {
 
-/// Four channels; what is missing is 0, alpha 1.
-Image widened(const Image& image) {
-    Image result(image.width, image.height, 4, 0.0f);
-    for (std::size_t i = 0; i < image.pixel_count(); ++i) {
-        for (int c = 0; c < 3; ++c) {
-            const bool grey = image.channels < 3;
-            result.values[4 * i + c] = image.values[image.channels * i + (grey ? 0 : c)];
-        }
-        const bool has_alpha = image.channels == 4 || image.channels == 2;
-        result.values[4 * i + 3] = has_alpha ? image.values[image.channels * i + image.channels - 1] : 1.0f;
-    }
-    return result;
+/// How a file of that kind has its alpha when nothing else is said: as its format's documentation has it.
+Coding::Alpha usual_alpha(const PictureFile& file) {
+    const std::string kind = kind_of(file);
+    if (kind == "exr") return Coding::Alpha::premultiplied;
+    return kind == "png" ? Coding::Alpha::straight : Coding::Alpha::none;
+}
+
+/// Does any pixel of this picture of four channels let something through?
+bool is_transparent(const Image& image) {
+    for (std::size_t i = 3; i < image.values.size(); i += 4)
+        if (image.values[i] != 1) return true;
+    return false;
 }
 
 class ApplyCommand : public Command {
 public:
     void declare(CLI::App& app) override {
-        app.add_option("--color", color_, "The picture (PNG, JPEG, HDR, EXR, PFM)")
-            ->required()
-            ->type_name("IMG");
-        app.add_option("--depth", depth_, "Its depth (EXR, PFM, PNG)")->type_name("IMG");
-        app.add_option("--depth-layer", depth_layer_,
-                       "Channel of an EXR depth (default: Z, depth.Z, or the only one)")
-            ->type_name("LAYER");
-        app.add_option("--normal", normal_, "View-space normals; PNG as 0.5 + n/2")->type_name("IMG");
-        app.add_option("--emission", emission_, "Light that surfaces emit, part of the picture")
-            ->type_name("IMG");
-        app.add_option("--ambient", ambient_, "The picture's share that occlusion may darken")
-            ->type_name("IMG");
-        app.add_option("-o,--output", output_, "Result: .png (display), .exr, .hdr, .pfm (linear)")
-            ->required()
-            ->type_name("FILE");
+        picture_options_.declare(app);
+        output_options_.declare(app, "Result: .png, .jpg (display), .exr, .hdr, .pfm (linear)");
+        app.add_option("--alpha", alpha_,
+                       "Of the result: premultiplied (default for .exr), straight (default for .png) or drop")
+            ->check(CLI::IsMember({"premultiplied", "straight", "drop"}))
+            ->default_str("");
         app.add_option("--working", working_, "Format of working targets")
             ->check(CLI::IsMember({"rgba16f", "rgba32f"}))
             ->capture_default_str();
-        app.add_option("--time", time_, "Seconds")->capture_default_str();
+        app.add_option("--time", time_, "Seconds")->check(finite())->capture_default_str();
         app.add_option("--frame", frame_, "Frame number: noise depends on it")->capture_default_str();
         app.add_option("--seed", seed_, "Seed of all noise")->capture_default_str();
         app.add_flag("--no-fuse", no_fuse_, "Let every effect write its own target");
-        depth_options_.declare(app);
         chain_options_.declare(app);
         catalog_options_.declare(app);
         report_options_.declare(app);
     }
 
     Status run() override {
-        Facts facts;
-        facts.output = output_for(output_);
+        const PictureFile output = output_options_.file();
         if (!chain_options_.given()) throw Error("nothing to apply: give --chain or --effect");
         const Catalog catalog = catalog_options_.load();
         Chain chain = chain_options_.read(catalog);
 
-        const ImageFile color = read_image(color_);
-        facts.width = color.image.width;
-        facts.height = color.image.height;
-        facts.color_is_8bit = color.coding.plain_srgb && color.coding.bits == 8;
-        facts.camera = depth_options_.camera(facts.width, facts.height);
-        facts.working_format = *format_by_name(working_);
-        facts.fuse = !no_fuse_;
-        std::map<std::string, Image> images = attachments(facts);
-        for (const auto& [name, image] : images)
-            facts.attachments.push_back(name);
-        images["color"] = widened(color.image);
+        PictureInput input = picture_options_.read(report_options_.quiet());
+        const Written written = written_of(input, output);
+        const Facts facts = facts_of(input, output, written);
+        std::map<std::string, Image>& images = input.attachments;
+        images["color"] = std::move(input.color.image);
 
         const GlSession session;
         std::map<std::string, gl::Texture> uploaded;
@@ -99,15 +84,57 @@ public:
         ChainRunner runner(std::move(chain), facts);
         const Textures textures = upload(runner.attachments());
         runner.run(textures, frame, Timing::off, report_options_.watch());
-        const bool has_alpha = color.image.channels == 4 || color.image.channels == 2;
-        write_picture(runner, output_, has_alpha);
+        tell_or_refuse(output.path.string(), write_picture(runner, output, written), false, false);
         if (report_options_.wants_times())
             runner.run(textures, frame, Timing::profile, report_options_.watch());
-        report_options_.tell(runner.executor().report(), budget, output_);
+        report_options_.tell(runner.executor().report(), budget, output);
         return Status::success;
     }
 
 private:
+    /// What becomes of the picture's alpha. Light that is to be multiplied by it is, before any effect sees it; light
+    /// that is to be divided by it is divided at the very end, so that effects work on what reaches the lens.
+    Written written_of(PictureInput& input, const PictureFile& output) const {
+        Written written;
+        if (picture_options_.carries()) written.origin = {input.source.get(), input.request};
+        const Coding::Alpha had = input.color.coding.alpha;
+        if (had == Coding::Alpha::none) return written;
+        written.alpha_of_file = alpha_.empty()         ? usual_alpha(output)
+                                : alpha_ == "drop"     ? Coding::Alpha::none
+                                : alpha_ == "straight" ? Coding::Alpha::straight
+                                                       : Coding::Alpha::premultiplied;
+        const bool can_hold_alpha = usual_alpha(output) != Coding::Alpha::none;
+        if (written.alpha_of_file != Coding::Alpha::none && !can_hold_alpha)
+            throw Error(fmt::format("--alpha {}: a .{} has no alpha", alpha_, kind_of(output)));
+        if (!can_hold_alpha && alpha_.empty() && is_transparent(input.color.image))
+            tell_or_refuse(
+                output.path.string(),
+                {fmt::format("a .{} has no alpha: it is left out (--alpha drop says that it may be)",
+                             kind_of(output))},
+                picture_options_.strict(), false);
+        written.alpha_of_chain = had;
+        if (had == Coding::Alpha::straight && written.alpha_of_file == Coding::Alpha::premultiplied) {
+            input.color.image = with_alpha(std::move(input.color.image), had, written.alpha_of_file);
+            written.alpha_of_chain = Coding::Alpha::premultiplied;
+        }
+        return written;
+    }
+
+    Facts facts_of(const PictureInput& input, const PictureFile& output, const Written& written) const {
+        Facts facts;
+        facts.output = output_for(output);
+        facts.width = input.color.image.width;
+        facts.height = input.color.image.height;
+        facts.color_is_8bit = input.color.coding.plain_srgb && input.color.coding.bits == 8;
+        facts.divide_by_alpha = divides_by_alpha(output, written);
+        facts.camera = input.camera;
+        facts.working_format = *format_by_name(working_);
+        facts.fuse = !no_fuse_;
+        for (const auto& [name, image] : input.attachments)
+            facts.attachments.push_back(name);
+        return facts;
+    }
+
     /// The texture's name; it is made when it holds nothing yet.
     static std::uint32_t uploaded_texture(gl::Texture& texture, const Image& image) {
         if (texture.name() == 0) {
@@ -118,46 +145,12 @@ private:
         return texture.name();
     }
 
-    /// Everything but the colour, as the core wants it.
-    std::map<std::string, Image> attachments(const Facts& facts) const {
-        std::map<std::string, Image> images;
-        if (!depth_.empty()) {
-            const Image depth = read_image(depth_, {.role = Role::depth, .layer = depth_layer_}).image;
-            check_size(depth, depth_, facts);
-            images["depth"] = depth_options_.samples(depth, facts.camera);
-        }
-        if (!normal_.empty()) {
-            const ImageFile file = read_image(normal_, {.role = Role::normal});
-            Image normal = widened(file.image);
-            check_size(normal, normal_, facts);
-            if (file.coding.numbers == Coding::Numbers::codes) {
-                for (float& value : normal.values)
-                    value = value * 2 - 1;
-            }
-            images["normal"] = std::move(normal);
-        }
-        for (const auto& [role, file] :
-             {std::pair{Role::emission, emission_}, std::pair{Role::ambient, ambient_}}) {
-            if (file.empty()) continue;
-            Image& image = images[name_of(role)];
-            image = widened(read_image(file, {.role = role}).image);
-            check_size(image, file, facts);
-        }
-        return images;
-    }
-
-    void check_size(const Image& image, const std::string& file, const Facts& facts) const {
-        if (image.width == facts.width && image.height == facts.height) return;
-        throw Error(Place{.file = file}, fmt::format("is {}x{}, but {} is {}x{}", image.width, image.height,
-                                                     color_, facts.width, facts.height));
-    }
-
-    std::string color_, depth_, depth_layer_, normal_, emission_, ambient_, output_;
-    std::string working_ = "rgba32f";
+    std::string working_ = "rgba32f", alpha_;
     double time_ = 0;
     std::uint32_t frame_ = 0, seed_ = 0;
     bool no_fuse_ = false;
-    DepthOptions depth_options_;
+    PictureOptions picture_options_;
+    OutputOptions output_options_;
     ChainOptions chain_options_{""};
     CatalogOptions catalog_options_;
     ReportOptions report_options_;

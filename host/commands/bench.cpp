@@ -7,26 +7,21 @@
 #include "picture.hpp"
 #include "scene_input.hpp"
 
+#include <base/read_file.hpp>
 #include <image/metrics.hpp>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
-#include <fstream>
-#include <iterator>
 
 namespace postfx::host {
 namespace {
 
+constexpr std::size_t max_shader_bytes = std::size_t{1} << 20;
+
 nlohmann::ordered_json spread(const std::vector<double>& samples) {
     return {{"median", median(samples)}, {"p10", quantile(samples, 0.1)}, {"p90", quantile(samples, 0.9)}};
-}
-
-std::string read_text(const std::string& file) {
-    std::ifstream stream(file, std::ios::binary);
-    if (!stream) throw Error(Place{.file = file}, "can't be read");
-    return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
 }
 
 class BenchCommand : public Command {
@@ -143,8 +138,8 @@ private:
         cases.push_back({"copy pass", [copy, color] { copy->draw(color); }});
         if (with_scene_) cases.push_back(framed({"scene alone", [] {}}, scenes, {}));
         for (const std::string& rival : rivals_) {
-            const auto pass =
-                pass_of(linear_ ? facts_.working_format : Format::rgba8, read_text(rival), rival);
+            const auto pass = pass_of(linear_ ? facts_.working_format : Format::rgba8,
+                                      read_file(rival, max_shader_bytes, "a fragment shader"), rival);
             cases.push_back(framed({rival, [pass, color] { pass->draw(color); }}, scenes, {}));
             compare_with_rival(*pass, rival);
         }

@@ -4,7 +4,7 @@
 #include "gl_session.hpp"
 #include "interruption.hpp"
 #include "options.hpp"
-#include "resources.hpp"
+#include "scene_input.hpp"
 #include "truth_store.hpp"
 
 #include "study/engine/budget_proof.hpp"
@@ -118,7 +118,7 @@ public:
         const StopOnInterrupt guard;
         try {
             for (const std::string& scene : scenes_.empty() ? default_scenes() : scenes_) {
-                study::StudyScene opened(open_scene(scene, data_directory() / "configs/scenes"));
+                study::StudyScene opened(open_known_scene(scene));
                 proofs.push_back(
                     study::prove_budgets(opened, chain, curves.curves, options_, truth_store(store_)));
             }

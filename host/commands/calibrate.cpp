@@ -5,6 +5,7 @@
 #include "interruption.hpp"
 #include "options.hpp"
 #include "resources.hpp"
+#include "scene_input.hpp"
 #include "text_table.hpp"
 
 #include "study/engine/times.hpp"
@@ -138,9 +139,7 @@ private:
 
     study::StudyScene& scene(const std::string& name) {
         std::unique_ptr<study::StudyScene>& found = scenes_[name];
-        if (!found)
-            found =
-                std::make_unique<study::StudyScene>(open_scene(name, data_directory() / "configs/scenes"));
+        if (!found) found = std::make_unique<study::StudyScene>(open_known_scene(name));
         return *found;
     }
 

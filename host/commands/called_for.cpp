@@ -1,6 +1,7 @@
 // postfx called-for: which effects which scenes call for, why, and what it saves to leave out the others.
 #include "command.hpp"
 #include "gl_session.hpp"
+#include "number_checks.hpp"
 #include "options.hpp"
 #include "resources.hpp"
 #include "scene_input.hpp"
@@ -142,7 +143,9 @@ public:
             ->type_name("CHAIN")
             ->capture_default_str();
         app.add_option("--size", size_, "Of the picture, pixels")->type_name("WxH")->capture_default_str();
-        app.add_option("--time", time_, "Seconds after the scenes' start")->capture_default_str();
+        app.add_option("--time", time_, "Seconds after the scenes' start")
+            ->check(finite())
+            ->capture_default_str();
         app.add_option("--samples", samples_, "Rounds; each draws everything of a scene once")
             ->check(CLI::Range(3, 100000))
             ->capture_default_str();
@@ -185,7 +188,7 @@ private:
         }
         std::vector<Scene> scenes;
         for (const std::string& name : names)
-            scenes.push_back(open_scene(name, directory));
+            scenes.push_back(open_known_scene(name));
         return scenes;
     }
 

@@ -95,6 +95,7 @@ std::string cli_page(const CLI::App& program) {
     std::string text =
         fmt::format("{}\n# The program\n\n{}", generated, help_of(program, program.get_name()));
     for (const CLI::App* command : program.get_subcommands({})) {
+        if (command->get_group().empty()) continue; // hidden
         const std::string name = program.get_name() + " " + command->get_name();
         text += fmt::format("\n## {}\n\n{}", name, help_of(*command, name));
     }

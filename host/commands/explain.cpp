@@ -45,7 +45,7 @@ public:
         Chain chain = chain_options_.read(catalog);
         const Scene scene = scene_options_.open();
         ViewBounds bounds(scene);
-        Facts facts = scene_options_.facts(scene, bounds, output_for(output_));
+        Facts facts = scene_options_.facts(scene, bounds, output_for({output_}));
         // Drawn is only for --measure, and to meet a budget.
         std::optional<GlSession> session;
         if (measure_ || chain.budget) session.emplace();

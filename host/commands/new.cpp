@@ -3,6 +3,7 @@
 #include "resources.hpp"
 #include "text_table.hpp"
 
+#include <base/read_file.hpp>
 #include <postfx/catalog.hpp>
 #include <postfx/error.hpp>
 
@@ -13,7 +14,6 @@
 #include <cerrno>
 #include <cstring>
 #include <fstream>
-#include <sstream>
 
 namespace fs = std::filesystem;
 
@@ -78,19 +78,13 @@ std::string replaced(std::string text, std::string_view from, const std::string&
     return text;
 }
 
+constexpr std::size_t max_template_bytes = std::size_t{1} << 20;
+
 /// The template's text or file name with the effect's name in all spellings.
 std::string named(std::string text, const std::string& name) {
     text = replaced(std::move(text), "my_effect", name);
     text = replaced(std::move(text), "MyEffect", pascal(name));
     return replaced(std::move(text), "MY_EFFECT", upper(name));
-}
-
-std::string read_text(const fs::path& file) {
-    std::ifstream in(file, std::ios::binary);
-    std::ostringstream text;
-    text << in.rdbuf();
-    if (!in || !text) throw Error(Place{.file = file.string()}, "can't be read");
-    return text.str();
 }
 
 void write_text(const fs::path& file, const std::string& text) {
@@ -118,12 +112,20 @@ void write_folder(const fs::path& folder, const std::string& name) {
         for (const fs::directory_entry& entry :
              fs::directory_iterator(data_directory() / "templates/effect")) {
             write_text(unfinished.folder / named(entry.path().filename().string(), name),
-                       named(read_text(entry.path()), name));
+                       named(read_file(entry.path(), max_template_bytes, "a template"), name));
         }
         fs::rename(unfinished.folder, folder);
     } catch (const fs::filesystem_error& error) {
         throw Error(Place{.file = folder.string()}, "can't be made: " + error.code().message());
     }
+}
+
+/// A file's name as one word of a command line.
+std::string for_shell(const std::string& name) {
+    constexpr std::string_view plain =
+        "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_./+@%,=-";
+    if (name.find_first_not_of(plain) == std::string::npos) return name;
+    return "'" + replaced(name, "'", "'\\''") + "'";
 }
 
 /// What find_package(postfx) needs to be told: the build tree or the installation that this program is of.
@@ -174,12 +176,12 @@ private:
                               2));
         fmt::print(
             "\nBuild and test it:\n"
-            "  cmake -S {0} -B {0}/build -Dpostfx_DIR={1}\n"
+            "  cmake -S {0} -B {0}/build -G Ninja -Dpostfx_DIR={1}\n"
             "  cmake --build {0}/build\n"
             "  ctest --test-dir {0}/build --output-on-failure\n"
             "\nUse it:\n"
             "  postfx apply --color PICTURE --plugin-dir {0}/build/postfx_plugins --effect {2} -o {2}.png\n",
-            folder, cmake_directory(), name_);
+            for_shell(folder), for_shell(cmake_directory()), name_);
     }
 
     std::string name_, folder_;

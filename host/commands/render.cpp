@@ -21,8 +21,9 @@ namespace fs = std::filesystem;
 namespace postfx::host {
 namespace {
 
-/// "name.png" -> "name_0007.png".
+/// "name.png" -> "name_0007.png"; pictures on standard output just follow each other.
 fs::path numbered(const fs::path& file, int frame, int frames) {
+    if (file == "-") return file;
     const std::size_t digits = std::max<std::size_t>(4, std::to_string(frames - 1).size());
     return file.parent_path()
            / fmt::format("{}_{:0{}}{}", file.stem().string(), frame, digits, file.extension().string());
@@ -33,12 +34,10 @@ public:
     void declare(CLI::App& app) override {
         scene_options_.declare(app);
         chain_options_.declare(app);
-        app.add_option(
-               "-o,--output", output_,
-               "Picture: .png (8 bit, dithered), .exr, .hdr, .pfm (float; scene-linear unless the chain tone "
-               "maps). Of a sequence: FILE_0000.png ...")
-            ->required()
-            ->type_name("FILE");
+        output_options_.declare(
+            app,
+            "Picture: .png (8 bit, dithered), .exr, .hdr, .pfm (float; scene-linear unless the chain tone "
+            "maps). Of a sequence: FILE_0000.png ...");
         app.add_option("--frames", frames_, "Length of a sequence; 1 = one picture")
             ->check(CLI::Range(1, 1000000))
             ->capture_default_str();
@@ -65,14 +64,13 @@ public:
 
     Status run() override {
         read_saves();
-        const Output output = output_for(output_);
+        output_ = output_options_.file();
         const Catalog catalog = catalog_options_.load();
         Chain chain = chain_options_.read(catalog);
         const Scene scene = scene_options_.open();
         ViewBounds bounds(scene);
-        Facts facts = scene_options_.facts(scene, bounds, output);
+        Facts facts = scene_options_.facts(scene, bounds, output_for(output_));
         facts.working_format = *format_by_name(working_);
-        check_parent(output_);
 
         const GlSession session;
         SceneRenderer renderer(scene, {.samples = samples_});
@@ -85,12 +83,15 @@ public:
             render_frame(renderer, runner, bounds, i);
             progress.advance();
         }
-        const fs::path told = frames_ == 1 ? fs::path(output_) : numbered(output_, frames_ - 1, frames_);
-        report_options_.tell(runner.executor().report(), budget, told);
+        report_options_.tell(runner.executor().report(), budget, output_of(frames_ - 1));
         return Status::success;
     }
 
 private:
+    PictureFile output_of(int frame) const {
+        return {frames_ == 1 ? output_.path : numbered(output_.path, frame, frames_), output_.kind};
+    }
+
     void render_frame(SceneRenderer& renderer, ChainRunner& runner, ViewBounds& bounds, int index) {
         FrameInputs frame;
         frame.time = scene_options_.time() + index / fps_;
@@ -109,7 +110,7 @@ private:
         }
         const Textures textures = textures_of(renderer.render(facts.width, facts.height, frame.time, wanted));
         runner.run(textures, frame, Timing::off, report_options_.watch());
-        write_picture(runner, frames_ == 1 ? fs::path(output_) : numbered(output_, index, frames_), false);
+        write_picture(runner, output_of(index));
         for (const auto& [name, file] : saves_) {
             save_attachment(textures.at(name), name, frames_ == 1 ? file : numbered(file, index, frames_),
                             facts);
@@ -127,7 +128,8 @@ private:
             for (std::size_t i = 0; i < image.pixel_count(); ++i) {
                 std::copy_n(&image.values[4 * i], 3, &rgb.values[3 * i]);
             }
-            return write_image(file, rgb);
+            write_image(file, rgb);
+            return;
         }
         Image depth = gl::read_texture(texture, facts.width, facts.height, Format::depth32f);
         for (float& value : depth.values) {
@@ -148,15 +150,7 @@ private:
             }
             saves_[name] = item.substr(equals + 1);
             check_writable_kind(saves_[name]);
-            check_parent(saves_[name]);
-        }
-    }
-
-    /// Before anything slow: a folder that is not there would lose the picture at the end.
-    static void check_parent(const fs::path& file) {
-        const fs::path parent = file.parent_path();
-        if (!parent.empty() && !fs::is_directory(parent)) {
-            throw Error(Place{.file = file.string()}, "its folder does not exist");
+            check_output_folder(saves_[name]); // before anything slow
         }
     }
 
@@ -164,7 +158,9 @@ private:
     ChainOptions chain_options_{"cinematic"};
     CatalogOptions catalog_options_;
     ReportOptions report_options_;
-    std::string output_, working_ = "rgba16f";
+    OutputOptions output_options_;
+    PictureFile output_;
+    std::string working_ = "rgba16f";
     std::vector<std::string> save_;
     std::map<std::string, fs::path> saves_;
     int frames_ = 1, samples_ = 4;

@@ -3,9 +3,10 @@
 #include "effect_text.hpp"
 #include "gl_session.hpp"
 #include "interruption.hpp"
+#include "number_checks.hpp"
 #include "options.hpp"
 #include "picture.hpp"
-#include "resources.hpp"
+#include "scene_input.hpp"
 #include "truth_store.hpp"
 
 #include <image/files.hpp>
@@ -48,7 +49,9 @@ public:
             ->default_str("")
             ->allow_extra_args(false);
         app.add_option("--size", size_, "Of the picture, pixels")->type_name("WxH")->capture_default_str();
-        app.add_option("--time", time_, "Seconds after the scene's start")->capture_default_str();
+        app.add_option("--time", time_, "Seconds after the scene's start")
+            ->check(finite())
+            ->capture_default_str();
         app.add_option("--samples", samples_, "Of the truth, an even number; its own default without")
             ->check(CLI::Range(2, 1 << 24))
             ->type_name("N")
@@ -104,7 +107,7 @@ private:
         Chain chain;
         parse_chain_entry(effect_text(), "EFFECT", catalog, chain);
         const Size size = parse_size(size_);
-        return {.scene = open_scene(scene_, data_directory() / "configs/scenes"),
+        return {.scene = open_known_scene(scene_),
                 .time = time_,
                 .width = size.width,
                 .height = size.height,

@@ -89,7 +89,7 @@ public:
         const Scene scene = scene_options_.open();
         ViewBounds bounds(scene);
         Facts facts = scene_options_.facts(scene, bounds, Output::display);
-        if (!output_.empty() && output_for(output_) != Output::display) {
+        if (!output_.empty() && output_for({output_}) != Output::display) {
             throw Error(Place{.file = output_}, "the window's picture is for display: name a .png");
         }
         Window window(facts.width, facts.height, "postfx", debug_build);
@@ -102,7 +102,7 @@ public:
         fmt::print("{}", help);
         loop(window, runner, renderer, bounds);
         budget_.reset(); // while there is a context
-        if (!output_.empty()) write_picture(runner, output_, false);
+        if (!output_.empty()) write_picture(runner, {output_});
         tell_debug_messages();
         return Status::success;
     }
@@ -111,7 +111,7 @@ private:
     void loop(Window& window, ChainRunner& runner, SceneRenderer& renderer, ViewBounds& bounds) {
         const Scene& scene = renderer.scene();
         Presenter presenter;
-        FlyCamera pilot(scene.camera_at(scene_options_.time()));
+        FlyCamera pilot(scene.camera_at(scene_options_.time()), scene.flying_speed);
         double scene_time = scene_options_.time();
         double last = gl::HostTime::now().wall_ms;
         for (std::uint32_t frame = 0; !window.should_close() && (frames_ == 0 || frame < frames_); ++frame) {
@@ -167,7 +167,7 @@ private:
             if (key == GLFW_KEY_ESCAPE) window.close();
             if (key == GLFW_KEY_F12) {
                 const std::filesystem::path file = next_screenshot();
-                write_picture(runner, file, false);
+                write_picture(runner, {file});
                 fmt::print("wrote {}\n", file.string());
             }
         }

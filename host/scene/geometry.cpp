@@ -63,18 +63,23 @@ std::vector<glm::vec2> smoothed(const std::vector<glm::vec2>& points) {
 
 } // namespace
 
-void Bounds::add(glm::vec3 point) {
+void Bounds::add(glm::dvec3 point) {
     low = glm::min(low, point);
     high = glm::max(high, point);
 }
 
-Bounds Bounds::transformed(const glm::mat4& matrix) const {
+void Bounds::add(const Bounds& other) {
+    low = glm::min(low, other.low);
+    high = glm::max(high, other.high);
+}
+
+Bounds Bounds::transformed(const glm::dmat4& matrix) const {
     Bounds result;
     if (empty()) return result;
     for (int corner = 0; corner < 8; ++corner) {
-        const glm::vec3 point(corner & 1 ? high.x : low.x, corner & 2 ? high.y : low.y,
-                              corner & 4 ? high.z : low.z);
-        result.add(glm::vec3(matrix * glm::vec4(point, 1)));
+        const glm::dvec3 point(corner & 1 ? high.x : low.x, corner & 2 ? high.y : low.y,
+                               corner & 4 ? high.z : low.z);
+        result.add(glm::dvec3(matrix * glm::dvec4(point, 1)));
     }
     return result;
 }
@@ -125,7 +130,7 @@ void Mesh::append(const Mesh& other, const glm::mat4& placement, glm::vec3 tint)
 Bounds Mesh::bounds() const {
     Bounds result;
     for (const Vertex& vertex : vertices)
-        result.add(vertex.position);
+        result.add(glm::dvec3(vertex.position));
     return result;
 }
 

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <limits>
+#include <memory>
 #include <vector>
 
 namespace postfx::host {
@@ -16,23 +17,44 @@ struct Vertex {
     glm::vec3 tint{1}; ///< multiplies the material's diffuse and emission
 };
 
+/// What few meshes have besides.
+struct VertexExtra {
+    glm::vec2 uv{0};   ///< a second pair
+    float opacity = 1; ///< multiplies the material's
+};
+
 /// Axis-aligned box; empty until something was added.
 struct Bounds {
-    glm::vec3 low{std::numeric_limits<float>::infinity()};
-    glm::vec3 high{-std::numeric_limits<float>::infinity()};
+    glm::dvec3 low{std::numeric_limits<double>::infinity()};
+    glm::dvec3 high{-std::numeric_limits<double>::infinity()};
 
     bool empty() const { return low.x > high.x; }
-    void add(glm::vec3 point);
-    glm::vec3 center() const { return 0.5f * (low + high); }
+    void add(glm::dvec3 point);
+    void add(const Bounds& other);
+    glm::dvec3 center() const { return 0.5 * (low + high); }
     /// Of the sphere around center() that holds the box.
-    float radius() const { return 0.5f * glm::length(high - low); }
+    double radius() const { return 0.5 * glm::length(high - low); }
     /// The box around this box, transformed.
-    Bounds transformed(const glm::mat4& matrix) const;
+    Bounds transformed(const glm::dmat4& matrix) const;
+};
+
+/// How the vertices of a mesh move: first by shapes, each as far as its weight says, then with joints.
+struct Deformation {
+    struct Shape {
+        std::vector<glm::vec3> positions, normals; ///< differences, one per vertex; there may be no normals
+    };
+    std::vector<Shape> shapes;
+
+    std::uint32_t influences = 0;      ///< joints per vertex
+    std::vector<std::uint32_t> joints; ///< `influences` per vertex, indices into the skin's joints
+    std::vector<float> weights;        ///< as many; their sum is 1 for every vertex
 };
 
 struct Mesh {
     std::vector<Vertex> vertices;
-    std::vector<std::uint32_t> indices; ///< three per triangle
+    std::vector<std::uint32_t> indices;             ///< three per triangle
+    std::vector<VertexExtra> extras;                ///< one per vertex, or none at all
+    std::shared_ptr<const Deformation> deformation; ///< null: it keeps its shape
 
     bool empty() const { return indices.empty(); }
     std::uint32_t add(const Vertex& vertex);
@@ -46,6 +68,14 @@ struct Mesh {
 
     Bounds bounds() const;
 };
+
+/// The vertices with `weights` of the deformation's shapes and then, if there are any, with `joints`, which lead from the
+/// mesh as it was bound to where it is. Missing weights are 0.
+void deform(const Mesh& mesh, const std::vector<float>& weights, const std::vector<glm::mat4>& joints,
+            std::vector<Vertex>& result);
+
+/// The matrix for normals of what that matrix places, up to a factor above 0; also where it flattens.
+glm::dmat3 normal_matrix(const glm::dmat4& placement);
 
 /// Area-weighted normals from the triangles; vertices shared by triangles become smooth.
 void compute_normals(Mesh& mesh);

@@ -1,40 +1,48 @@
 #include "assets.hpp"
 
+#include <image/files.hpp>
+#include <image/srgb.hpp>
 #include <postfx/error.hpp>
 
-#include <fmt/format.h>
-
-#include <fstream>
-#include <iterator>
-
-#define STB_IMAGE_IMPLEMENTATION
-#define STB_IMAGE_STATIC
-#define STBI_NO_STDIO
-#include <stb_image.h>
+#include <algorithm>
+#include <cmath>
 
 namespace postfx::host {
+namespace {
 
-PicturePtr decode_picture(const std::uint8_t* bytes, std::size_t size, bool srgb, const std::string& name) {
-    int width = 0, height = 0, channels = 0;
-    stbi_set_flip_vertically_on_load_thread(1);
-    stbi_uc* pixels = stbi_load_from_memory(bytes, static_cast<int>(size), &width, &height, &channels, 4);
-    if (!pixels) throw Error({name, 0, 0, {}, {}}, fmt::format("not a picture: {}", stbi_failure_reason()));
+/// Codes of 8 bits: those of the file, more bits rounded, and light (HDR, EXR, PFM) as sRGB shows it.
+std::uint8_t code_of(float value, bool encode) {
+    const double share = encode ? linear_to_srgb(value) : value > 0 ? std::min<double>(value, 1) : 0.0;
+    return static_cast<std::uint8_t>(std::lround(255 * share));
+}
+
+PicturePtr picture_of(const ImageSource& source, bool srgb) {
+    const ImageFile file = read_image(source, {.role = Role::texture});
+    const Image& image = file.image;
+    const bool encode = srgb && file.coding.numbers != Coding::Numbers::codes;
+    const int colors = image.channels < 3 ? 1 : 3;
     auto picture = std::make_shared<Picture>();
-    picture->width = width;
-    picture->height = height;
+    picture->width = image.width;
+    picture->height = image.height;
     picture->srgb = srgb;
-    picture->rgba.assign(pixels,
-                         pixels + static_cast<std::size_t>(width) * static_cast<std::size_t>(height) * 4);
-    stbi_image_free(pixels);
+    picture->rgba.reserve(4 * image.pixel_count());
+    for (std::size_t i = 0; i < image.values.size(); i += static_cast<std::size_t>(image.channels)) {
+        const float* pixel = &image.values[i];
+        for (int channel = 0; channel < 3; ++channel)
+            picture->rgba.push_back(code_of(pixel[std::min(channel, colors - 1)], encode));
+        picture->rgba.push_back(image.channels > colors ? code_of(pixel[colors], false) : std::uint8_t{255});
+    }
     return picture;
 }
 
+} // namespace
+
+PicturePtr decode_picture(const std::uint8_t* bytes, std::size_t size, bool srgb, const std::string& name) {
+    return picture_of({name, std::string(reinterpret_cast<const char*>(bytes), size)}, srgb);
+}
+
 PicturePtr load_picture(const std::filesystem::path& file, bool srgb) {
-    std::ifstream stream(file, std::ios::binary);
-    const std::string bytes{std::istreambuf_iterator<char>(stream), {}};
-    if (!stream || bytes.empty()) throw Error({file.string(), 0, 0, {}, {}}, "can't read this texture");
-    return decode_picture(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size(), srgb,
-                          file.string());
+    return picture_of(open_image(file), srgb);
 }
 
 } // namespace postfx::host

@@ -46,14 +46,14 @@ Camera drawable(const Camera& camera) {
     return result;
 }
 
-bool outside(const glm::mat4& world_to_clip, const Bounds& bounds) {
+bool outside(const glm::dmat4& world_to_clip, const Bounds& bounds) {
     std::array<int, 5>
         beyond{}; // left, right, bottom, top, before the near plane; far is infinite or rarely helps
     for (int corner = 0; corner < 8; ++corner) {
-        const glm::vec3 point(corner & 1 ? bounds.high.x : bounds.low.x,
-                              corner & 2 ? bounds.high.y : bounds.low.y,
-                              corner & 4 ? bounds.high.z : bounds.low.z);
-        const glm::vec4 clip = world_to_clip * glm::vec4(point, 1);
+        const glm::dvec3 point(corner & 1 ? bounds.high.x : bounds.low.x,
+                               corner & 2 ? bounds.high.y : bounds.low.y,
+                               corner & 4 ? bounds.high.z : bounds.low.z);
+        const glm::dvec4 clip = world_to_clip * glm::dvec4(point, 1);
         beyond[0] += clip.x < -clip.w;
         beyond[1] += clip.x > clip.w;
         beyond[2] += clip.y < -clip.w;

@@ -263,25 +263,22 @@ const std::vector<Maker>& makers() {
     return all;
 }
 
-std::vector<Part> add_model(const YamlValue& value, const std::optional<YamlValue>& material, Scene& scene,
-                            Library& library) {
-    const std::filesystem::path file = std::filesystem::path(value.file()).parent_path() / value.text();
-    if (!std::filesystem::is_regular_file(file))
-        value.fail(fmt::format("there is no model file {}", file.string()));
+/// The model of that file, read once.
+const Model& find_model(const YamlValue& name, Scene& scene, Library& library) {
+    const std::filesystem::path file = name.named_file("a model");
     const auto [known, added] = library.models.try_emplace(file.string());
-    if (added) known->second = load_model(file);
-    const Model& model = known->second;
-
-    const std::size_t first = scene.materials.size();
-    if (!material)
-        scene.materials.insert(scene.materials.end(), model.materials.begin(), model.materials.end());
-    std::vector<Part> parts;
-    for (const ModelPart& part : model.parts) {
-        const std::size_t index =
-            material ? find_named(*material, library.materials, "material") : first + part.material;
-        parts.push_back({part.mesh, index});
+    if (!added) return known->second;
+    Model& model = known->second;
+    model = library.read_model(file);
+    for (const std::string& loss : model.losses)
+        scene.losses.push_back(fmt::format("{}: {}", file.string(), loss));
+    if (!model.lights.empty()) {
+        scene.losses.push_back(
+            fmt::format("{}: {} of its lights left out, for a scene file has its own", file.string(),
+                        model.lights.size() == 1 ? "1 is" : fmt::format("{} are", model.lights.size())));
+        model.lights.clear();
     }
-    return parts;
+    return model;
 }
 
 std::size_t slot_material(const std::string& slot, const YamlMap& slots, const YamlValue& mesh,
@@ -329,13 +326,29 @@ std::vector<Part> read_mesh(const YamlValue& mesh, const std::optional<YamlValue
     if (entries.size() != 1) mesh.fail("expected one mesh, as in \"box: {size: [1, 1, 1]}\"");
     const auto& [kind, options] = entries.front();
     const std::string word = kind.choice(kinds);
-    if (word == "model") return add_model(options, material, scene, library);
+    if (word == "model") return {}; // place_model does that
     for (const Maker& maker : makers()) {
         if (maker.name == word) {
             return add_made(maker.make(options, {scene, library}), mesh, material, slots, scene, library);
         }
     }
     return {};
+}
+
+void place_model(const YamlValue& mesh, const std::optional<YamlValue>& material, std::size_t node,
+                 Scene& scene, Library& library) {
+    const auto entries = mesh.entries();
+    if (entries.front().first.text() != "model") return;
+    const Model& model = find_model(entries.front().second, scene, library);
+    const std::size_t first = scene.nodes.size(), first_material = scene.materials.size();
+    add_model(scene, model, node);
+    if (!material) return;
+    scene.materials.resize(first_material);
+    const std::size_t instead = find_named(*material, library.materials, "material");
+    for (std::size_t i = first; i < scene.nodes.size(); ++i) {
+        for (Part& part : scene.nodes[i].parts)
+            part.material = instead;
+    }
 }
 
 } // namespace postfx::host

@@ -14,10 +14,7 @@ constexpr double high_light = 1e6; ///< brightest radiance that a file may name
 PicturePtr read_picture(const YamlMap& map, const std::string& key, bool srgb) {
     const auto name = map.find(key);
     if (!name) return nullptr;
-    const std::filesystem::path file = std::filesystem::path(name->file()).parent_path() / name->text();
-    if (!std::filesystem::is_regular_file(file))
-        name->fail(fmt::format("there is no texture file {}", file.string()));
-    return load_picture(file, srgb);
+    return load_picture(name->named_file("a texture"), srgb);
 }
 
 glm::dvec3 unit(const YamlValue& value) {
@@ -67,6 +64,7 @@ Material read_material(const std::string& name, const YamlValue& value) {
     material.normal_texture = read_picture(map, "normal_texture", false);
     material.emission_texture = read_picture(map, "emission_texture", true);
     material.metal_roughness_texture = read_picture(map, "metal_roughness_texture", false);
+    material.metal_rough = bool(material.metal_roughness_texture);
     return material;
 }
 

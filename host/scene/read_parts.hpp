@@ -3,6 +3,7 @@
 
 #include "assets.hpp"
 #include "generators.hpp"
+#include "model.hpp"
 #include "scene.hpp"
 #include "yaml.hpp"
 
@@ -24,6 +25,7 @@ struct Library {
     std::optional<Terrain> terrain;
     std::map<std::string, std::size_t> paths, materials;
     std::map<std::string, Model> models; ///< read already, by file
+    ModelSource read_model;
 };
 
 /// One of these names, or an error with the nearest. `what` is "material", "path", ...
@@ -38,8 +40,12 @@ Surroundings read_surroundings(const std::optional<YamlValue>& background,
 Light read_light(const YamlValue& value);
 Animation read_animation(const YamlValue& value, const Library& library);
 
-/// `mesh:` of a node with its `material:` and `materials:`. May add materials (a model brings its own).
+/// `mesh:` of a node with its `material:` and `materials:`, unless it is a model. May add materials.
 std::vector<Part> read_mesh(const YamlValue& mesh, const std::optional<YamlValue>& material,
                             const std::optional<YamlValue>& slots, Scene& scene, Library& library);
+/// If `mesh:` is a model: put its nodes below `node`, with its own materials or with that one. A scene file has lights of
+/// its own: the model's are a loss.
+void place_model(const YamlValue& mesh, const std::optional<YamlValue>& material, std::size_t node,
+                 Scene& scene, Library& library);
 
 } // namespace postfx::host

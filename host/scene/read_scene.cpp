@@ -7,21 +7,21 @@
 //     nodes: [{name, position, rotation, scale, look_at, mesh, material(s), light, animate, children}]
 #include "read_parts.hpp"
 
+#include <base/read_file.hpp>
+
 #include <postfx/error.hpp>
 
 #include <fmt/format.h>
 #include <glm/gtc/matrix_transform.hpp>
 
 #include <algorithm>
-#include <fstream>
-#include <iterator>
 
 namespace postfx::host {
 namespace {
 
 constexpr std::size_t max_nodes = 20000;
 constexpr int max_depth = 64;
-constexpr std::uintmax_t max_file_bytes = 8u << 20u;
+constexpr std::size_t max_file_bytes = std::size_t{8} << 20;
 
 using Named = std::vector<std::pair<YamlValue, YamlValue>>;
 
@@ -51,31 +51,21 @@ void replace_or_add(Named& named, const std::pair<YamlValue, YamlValue>& entry) 
     }
 }
 
-std::string read_file(const std::filesystem::path& file) {
-    const Place place{file.string(), 0, 0, {}, {}};
-    std::error_code problem;
-    const std::uintmax_t size = std::filesystem::file_size(file, problem);
-    if (problem) throw Error(place, "can't read this scene file");
-    if (size > max_file_bytes)
-        throw Error(place, fmt::format("{} bytes are too many for a scene file", size));
-    std::ifstream stream(file, std::ios::binary);
-    return {std::istreambuf_iterator<char>(stream), {}};
+std::string read_text(const std::filesystem::path& file) {
+    return read_file(file, max_file_bytes, "a scene");
 }
 
 Document read_document(const std::string& text, const std::filesystem::path& origin,
                        std::vector<std::filesystem::path> including);
 
-Document read_included(const YamlValue& name, const std::filesystem::path& origin,
-                       const std::vector<std::filesystem::path>& including) {
-    const std::filesystem::path file = (origin.parent_path() / name.text()).lexically_normal();
-    if (!std::filesystem::is_regular_file(file))
-        name.fail(fmt::format("there is no scene file {}", file.string()));
+Document read_included(const YamlValue& name, const std::vector<std::filesystem::path>& including) {
+    const std::filesystem::path file = name.named_file("a scene").lexically_normal();
     for (const std::filesystem::path& open : including) {
         if (std::filesystem::weakly_canonical(open) == std::filesystem::weakly_canonical(file)) {
             name.fail(fmt::format("{} includes itself", file.string()));
         }
     }
-    return read_document(read_file(file), file, including);
+    return read_document(read_text(file), file, including);
 }
 
 Document read_document(const std::string& text, const std::filesystem::path& origin,
@@ -85,7 +75,7 @@ Document read_document(const std::string& text, const std::filesystem::path& ori
                        "camera", "nodes"});
     including.push_back(origin);
     Document document;
-    if (const auto include = map.find("include")) document = read_included(*include, origin, including);
+    if (const auto include = map.find("include")) document = read_included(*include, including);
     const auto take = [&](const char* key, std::optional<YamlValue>& target) {
         if (const auto found = map.find(key)) target = found;
     };
@@ -122,6 +112,8 @@ Document read_document(const std::string& text, const std::filesystem::path& ori
 /// Turns a document into a scene.
 class SceneReader {
 public:
+    explicit SceneReader(const ModelSource& read_model) { library_.read_model = read_model; }
+
     Scene read(const Document& document, const std::filesystem::path& origin) {
         scene_.file = origin;
         scene_.name = origin.stem().string();
@@ -184,6 +176,8 @@ private:
             }
         }
         scene_.nodes.push_back(std::move(node));
+        if (const auto mesh = map.find("mesh"))
+            place_model(*mesh, map.find("material"), index, scene_, library_);
         if (const auto value_of_light = map.find("light")) {
             Light light = read_light(*value_of_light);
             light.node = index;
@@ -263,16 +257,17 @@ private:
 
 } // namespace
 
-Scene parse_scene(const std::string& yaml, const std::filesystem::path& origin) {
-    return SceneReader().read(read_document(yaml, origin, {}), origin);
+Scene parse_scene(const std::string& yaml, const std::filesystem::path& origin,
+                  const ModelSource& read_model) {
+    return SceneReader(read_model).read(read_document(yaml, origin, {}), origin);
 }
 
-Scene read_scene(const std::filesystem::path& file) {
-    return parse_scene(read_file(file), file);
+Scene read_scene(const std::filesystem::path& file, const ModelSource& read_model) {
+    return parse_scene(read_text(file), file, read_model);
 }
 
 std::string read_scene_description(const std::filesystem::path& file) {
-    const Document document = read_document(read_file(file), file, {});
+    const Document document = read_document(read_text(file), file, {});
     return document.description ? document.description->text() : "";
 }
 

@@ -36,14 +36,12 @@ OutputNames outputs_for(const std::vector<std::string>& wanted) {
     return outputs;
 }
 
-struct MeshPrograms {
-    gl::Program plain, textured; ///< textured only if the scene has textures
-};
+using MeshPrograms = std::map<SurfaceCode, gl::Program>; ///< one for each kind of surface in the scene
 
 /// A frame's part: where it is and how far.
 struct Draw {
     const DrawPart* part;
-    float distance; ///< from the eye to the middle of its bounds, metres
+    double distance; ///< from the eye to the middle of its bounds, metres
 };
 
 } // namespace
@@ -72,9 +70,11 @@ struct SceneRenderer::State {
 
     void prepare(int width, int height, const std::vector<std::string>& wanted);
     const MeshPrograms& programs_for(const OutputNames& outputs);
+    SurfaceCode code_of(const DrawPart& part) const;
     ViewBlock make_view(const Camera& camera, glm::dvec2 shift, int width, int height);
     void add_lights(ViewBlock& view) const;
-    void collect(const ViewBlock& view);
+    void collect();
+    glm::dvec3 eye() const { return glm::dvec3(glm::make_mat4(frame.camera.view_to_world.data())[3]); }
     void draw_depth();
     void draw_list(const std::vector<Draw>& list);
     void draw_one(const Draw& draw) const;
@@ -95,6 +95,7 @@ struct SceneRenderer::State {
 
     // Of the frame being drawn; kept so that steady frames allocate nothing.
     std::vector<glm::dmat4> nodes;
+    glm::dmat4 world_to_clip{1};
     std::vector<Draw> opaque, transparent;
     SceneFrame frame;
 };
@@ -127,11 +128,15 @@ const MeshPrograms& SceneRenderer::State::programs_for(const OutputNames& output
     const auto [made, is_new] = programs.try_emplace(outputs);
     if (!is_new) return made->second;
     const std::vector<LightCode> lights = shadows.light_codes(scene);
-    made->second.plain = make_mesh_program(outputs, false, lights);
-    const bool any_textures = std::any_of(scene.materials.begin(), scene.materials.end(),
-                                          [](const Material& material) { return material.textured(); });
-    if (any_textures) made->second.textured = make_mesh_program(outputs, true, lights);
+    for (const DrawPart& part : buffers.parts()) {
+        gl::Program& program = made->second[code_of(part)];
+        if (!program) program = make_mesh_program(outputs, code_of(part), lights);
+    }
     return made->second;
+}
+
+SurfaceCode SceneRenderer::State::code_of(const DrawPart& part) const {
+    return surface_code(scene.materials[part.material], !part.mesh->extras.empty());
 }
 
 ViewBlock SceneRenderer::State::make_view(const Camera& camera, glm::dvec2 shift, int width, int height) {
@@ -143,11 +148,11 @@ ViewBlock SceneRenderer::State::make_view(const Camera& camera, glm::dvec2 shift
         2 * projection.half_extent.y / height; // radians in the middle of a perspective picture
 
     ViewBlock view{};
-    view.world_to_clip = glm::mat4(projection.view_to_clip * world_to_view);
+    world_to_clip = projection.view_to_clip * world_to_view;
+    view.offset_to_clip = glm::mat4(projection.view_to_clip * glm::dmat4(glm::dmat3(world_to_view)));
     view.world_to_view = glm::mat4(world_to_view);
     view.clip_to_direction = glm::mat4(view_to_world * projection.clip_to_direction);
-    view.eye = glm::vec4(glm::vec3(view_to_world[3]), camera.orthographic ? 0.0f : 1.0f);
-    view.backward = glm::vec4(glm::vec3(view_to_world[2]), 0);
+    view.backward = glm::vec4(glm::vec3(view_to_world[2]), camera.orthographic ? 0.0f : 1.0f);
     view.zenith = glm::vec4(around.zenith, around.stars);
     view.horizon = glm::vec4(around.horizon, 0);
     view.ground = glm::vec4(around.ground, 1);
@@ -171,22 +176,23 @@ void SceneRenderer::State::add_lights(ViewBlock& view) const {
         const glm::dmat4& place = nodes[light.node];
         const float outer = std::cos(glm::radians(light.outer_angle)),
                     inner = std::cos(glm::radians(light.inner_angle));
-        view.lights[i] = {
-            glm::vec4(glm::vec3(place[3]), 1), glm::vec4(glm::normalize(glm::vec3(-place[2])), outer),
-            glm::vec4(light.color, 1 / std::max(inner - outer, 1e-4f)), glm::vec4(light.attenuation, 0)};
+        view.lights[i] = {glm::vec4(glm::vec3(glm::dvec3(place[3]) - eye()), 1),
+                          glm::vec4(glm::vec3(glm::normalize(glm::dvec3(-place[2]))), outer),
+                          glm::vec4(light.color, 1 / std::max(inner - outer, 1e-4f)),
+                          glm::vec4(light.attenuation, light.range)};
     }
-    shadows.describe(view);
+    shadows.describe(view, eye());
 }
 
-void SceneRenderer::State::collect(const ViewBlock& view) {
+void SceneRenderer::State::collect() {
     opaque.clear();
     transparent.clear();
     frame.draws = frame.triangles = 0;
     for (const DrawPart& part : buffers.parts()) {
-        const Bounds bounds = part.bounds.transformed(glm::mat4(nodes[part.node]));
-        if (outside(view.world_to_clip, bounds)) continue;
+        const Bounds bounds = part.bounds.transformed(nodes[part.node]);
+        if (outside(world_to_clip, bounds)) continue;
         auto& list = scene.materials[part.material].blended ? transparent : opaque;
-        list.push_back({&part, glm::length(bounds.center() - glm::vec3(view.eye))});
+        list.push_back({&part, glm::length(bounds.center() - eye())});
         ++frame.draws;
         frame.triangles += static_cast<std::size_t>(part.index_count) / 3;
     }
@@ -197,10 +203,14 @@ void SceneRenderer::State::collect(const ViewBlock& view) {
 }
 
 void SceneRenderer::State::draw_one(const Draw& draw) const {
-    const glm::mat4 to_world(nodes[draw.part->node]);
-    glUniformMatrix4fv(0, 1, GL_FALSE, glm::value_ptr(to_world));
-    glUniformMatrix3fv(1, 1, GL_FALSE, glm::value_ptr(glm::transpose(glm::inverse(glm::mat3(to_world)))));
-    glFrontFace(glm::determinant(glm::mat3(to_world)) < 0 ? GL_CW : GL_CCW);
+    const glm::dmat4& to_world = nodes[draw.part->node];
+    glm::dmat4 to_offset = to_world;
+    to_offset[3] -= glm::dvec4(eye(), 0);
+    const glm::mat4 object_to_offset(to_offset);
+    const glm::mat3 normal_to_world(normal_matrix(to_world));
+    glUniformMatrix4fv(0, 1, GL_FALSE, glm::value_ptr(object_to_offset));
+    glUniformMatrix3fv(1, 1, GL_FALSE, glm::value_ptr(normal_to_world));
+    glFrontFace(glm::determinant(glm::dmat3(to_world)) < 0 ? GL_CW : GL_CCW);
     (scene.materials[draw.part->material].two_sided ? glDisable : glEnable)(GL_CULL_FACE);
     glDrawElementsBaseVertex(GL_TRIANGLES, draw.part->index_count, GL_UNSIGNED_INT,
                              reinterpret_cast<const void*>(draw.part->first_index), draw.part->base_vertex);
@@ -221,11 +231,11 @@ void SceneRenderer::State::draw_depth() {
 void SceneRenderer::State::draw_list(const std::vector<Draw>& list) {
     glBindVertexArray(buffers.vertex_array());
     for (const Draw& draw : list) {
-        const bool textured = scene.materials[draw.part->material].textured();
-        glUseProgram((textured ? mesh_programs->textured : mesh_programs->plain).name());
+        glUseProgram(mesh_programs->at(code_of(*draw.part)).name());
         buffers.bind_material(draw.part->material);
         draw_one(draw);
     }
+    SceneBuffers::unbind_samplers();
     glDisable(GL_CULL_FACE);
     glFrontFace(GL_CCW);
 }
@@ -266,6 +276,7 @@ SceneFrame SceneRenderer::render(int width, int height, double time, const std::
     const gl::DebugGroup group("scene");
     s.prepare(width, height, wanted);
     s.scene.place_nodes(time, s.nodes);
+    s.buffers.deform(s.scene, s.nodes, time);
     s.frame.camera = drawable(camera ? camera->camera : s.scene.camera_at(time, s.nodes));
 
     // Depth runs from 1 at the near plane to 0 at infinity, for shadow maps too.
@@ -281,7 +292,7 @@ SceneFrame SceneRenderer::render(int width, int height, double time, const std::
     glNamedBufferSubData(s.view_buffer.name(), 0, sizeof view, &view);
     glBindBufferBase(GL_UNIFORM_BUFFER, 0, s.view_buffer.name());
     glBindTextureUnit(4, s.shadows.texture());
-    s.collect(view);
+    s.collect();
 
     s.targets->begin();
     s.draw_depth();

@@ -53,8 +53,10 @@ glm::dmat4 look_at_matrix(glm::dvec3 position, glm::dvec3 look_at, glm::dvec3 up
 void Scene::place_nodes(double time, std::vector<glm::dmat4>& result) const {
     result.resize(nodes.size());
     for (std::size_t i = 0; i < nodes.size(); ++i) {
-        const glm::dmat4 local = animated(*this, nodes[i].animation, nodes[i].local, time);
-        result[i] = nodes[i].parent ? result[*nodes[i].parent] * local : local;
+        const Node& node = nodes[i];
+        const glm::dmat4 local =
+            animated(*this, node.animation, node.keys ? node.keys->local(time) : node.local, time);
+        result[i] = node.parent ? result[*node.parent] * local : local;
     }
 }
 
@@ -86,10 +88,7 @@ Bounds Scene::bounds(double time) const {
     Bounds result;
     for (std::size_t i = 0; i < nodes.size(); ++i) {
         for (const Part& part : nodes[i].parts) {
-            const Bounds box = part.mesh->bounds().transformed(glm::mat4(placed[i]));
-            if (box.empty()) continue;
-            result.add(box.low);
-            result.add(box.high);
+            result.add(mesh_at(i, part.mesh, placed, time)->bounds().transformed(placed[i]));
         }
     }
     return result;
@@ -104,7 +103,7 @@ SceneFacts Scene::facts() const {
                 || surroundings.stars > 0 || surroundings.disc.has_value();
     facts.moves = moves(camera.animation);
     for (const Node& node : nodes) {
-        facts.moves = facts.moves || moves(node.animation);
+        facts.moves = facts.moves || moves(node.animation) || node.keys;
         for (const Part& part : node.parts) {
             ++facts.parts;
             facts.triangles += part.mesh->indices.size() / 3;

@@ -2,6 +2,8 @@
 #pragma once
 
 #include "geometry.hpp"
+#include "keyframes.hpp"
+#include "material.hpp"
 #include "path.hpp"
 
 #include <postfx/camera.hpp>
@@ -11,39 +13,13 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 namespace postfx::host {
-
-/// 8-bit pixels of an image file, bottom row first.
-struct Picture {
-    int width = 0, height = 0;
-    std::vector<std::uint8_t> rgba;
-    bool srgb = true; ///< colour; false for data (normals, roughness)
-};
-using PicturePtr = std::shared_ptr<const Picture>;
-
-/// Normalised Blinn-Phong. Colours are linear Rec. 709.
-struct Material {
-    std::string name;
-    glm::vec3 diffuse{0.8f};   ///< 0..1
-    glm::vec3 specular{0.04f}; ///< 0..1, seen head-on
-    float shininess = 32;      ///< Blinn-Phong exponent
-    glm::vec3 emission{0};     ///< radiance, any value from 0 up
-    float opacity = 1;         ///< below 1: blended, sorted back to front
-    bool two_sided = true;
-    float alpha_cutoff = 0; ///< fragments whose texture alpha is below are not there
-    bool blended = false;   ///< opacity below 1, or a texture whose alpha means opacity
-    PicturePtr diffuse_texture, normal_texture, emission_texture;
-    PicturePtr metal_roughness_texture; ///< as in glTF: green is roughness, blue is metalness
-
-    bool textured() const {
-        return diffuse_texture || normal_texture || emission_texture || metal_roughness_texture;
-    }
-};
 
 /// A drawable piece of a node: one mesh with one material.
 struct Part {
@@ -75,7 +51,17 @@ struct Node {
     std::optional<std::size_t> parent; ///< always an earlier node
     glm::dmat4 local{1};
     Animation animation;
+    std::shared_ptr<const NodeKeys>
+        keys; ///< of a model's own animation; where there are any, they replace local
     std::vector<Part> parts;
+    std::optional<std::size_t> skin;  ///< of the parts that have joints; index into Scene::skins
+    std::vector<float> shape_weights; ///< of the parts' shapes, unless keys say otherwise
+};
+
+/// Which nodes move the vertices of a mesh.
+struct Skin {
+    std::vector<std::size_t> joints;       ///< nodes
+    std::vector<glm::dmat4> mesh_to_joint; ///< for each joint, as the mesh was bound
 };
 
 inline constexpr std::size_t max_lights = 16;
@@ -88,9 +74,11 @@ struct Light {
     std::size_t node = 0;
     glm::vec3 color{1};
     glm::vec3 attenuation{1, 0, 0}; ///< x, y, z of 1 / (x + y L + z L^2), L in metres
+    float range = 0;                ///< point and spot: metres beyond which there is none of it; 0: no end
     float inner_angle = 20;         ///< degrees from the axis: full light inside
     float outer_angle = 30;         ///< degrees from the axis: none outside
     bool casts_shadow = false;      ///< directional and spot
+    float shadow_near = 0.05f;      ///< spot: metres; what is nearer throws no shadow
     float shadow_softness = 0.75f;  ///< half width of the shadow's filter, texels of its map
     /// Directional: metres around the middle of the view that shadows cover.
     float shadow_extent = 40;
@@ -121,6 +109,12 @@ struct SceneCamera {
     std::optional<double> focus_distance;      ///< metres along the view axis; a default for whoever focuses
 };
 
+/// A camera that a model brings along.
+struct NamedCamera {
+    std::vector<std::string> names; ///< its own and that of its node, at least one
+    SceneCamera camera;
+};
+
 struct SceneFacts {
     std::size_t triangles = 0, parts = 0, lights = 0;
     bool emitters = false;    ///< some material emits light
@@ -133,12 +127,17 @@ struct SceneFacts {
 struct Scene {
     std::string name, description;
     std::filesystem::path file;
+    std::string content; ///< of a file that can't be read again, as it is a pipe; else ""
     std::vector<Material> materials;
     std::vector<Path> paths;
     std::vector<Node> nodes;
+    std::vector<Skin> skins;
     std::vector<Light> lights;
     Surroundings surroundings;
     SceneCamera camera;
+    double flying_speed = 4;          ///< metres per second, at which one gets about in it
+    std::vector<NamedCamera> cameras; ///< others to choose from
+    std::vector<std::string> losses;  ///< what of the files is not in the scene, a line for each kind
 
     /// Node to world for every node, `time` seconds after the start. Resizes `result`.
     void place_nodes(double time, std::vector<glm::dmat4>& result) const;
@@ -148,6 +147,16 @@ struct Scene {
     Camera camera_at(double time) const;
     /// Of everything, at that time.
     Bounds bounds(double time = 0) const;
+    /// What leads from a mesh of nodes[node] as it was bound to the node's space, for each joint; none without a skin.
+    std::vector<glm::mat4> joint_matrices(std::size_t node, const std::vector<glm::dmat4>& placed) const;
+    std::vector<float> shape_weights(std::size_t node, double time) const;
+    /// Write the vertices of a mesh of nodes[node] as shapes and joints place them, in the node's space; `placed` from
+    /// place_nodes at the same time.
+    void deform(std::size_t node, const Mesh& mesh, const std::vector<glm::dmat4>& placed, double time,
+                std::vector<Vertex>& result) const;
+    /// The same as a mesh of its own; one without a deformation is returned as it is.
+    std::shared_ptr<const Mesh> mesh_at(std::size_t node, const std::shared_ptr<const Mesh>& mesh,
+                                        const std::vector<glm::dmat4>& placed, double time) const;
     SceneFacts facts() const;
 };
 
@@ -155,9 +164,28 @@ struct Scene {
 /// turned a little rather than undefined.
 glm::dmat4 look_at_matrix(glm::dvec3 position, glm::dvec3 look_at, glm::dvec3 up);
 
-/// What the user means by SCENE: a name in `scenes_directory`, a scene file (.yaml, .yml), or a model file,
-/// which gets a camera and light of its own. Throws Error.
-Scene open_scene(const std::string& argument, const std::filesystem::path& scenes_directory);
+/// A model as its file has it, before it stands in a scene.
+struct Model {
+    std::vector<Material> materials;
+    std::vector<Node> nodes; ///< parents come first; parts, skins, lights and cameras count within the model
+    std::vector<Skin> skins;
+    std::vector<Light> lights;
+    std::vector<NamedCamera> cameras;
+    std::vector<std::string> losses; ///< what is not in the model, one line for each kind
+
+    std::size_t part_count() const;
+};
+
+/// Where whoever opens a scene gets models from: load_model in model.hpp, or something that asks another process.
+using ModelSource = std::function<Model(const std::filesystem::path&)>;
+/// load_model, in this process.
+Model load_model_here(const std::filesystem::path& file);
+
+/// What the user means by SCENE: a name in `scenes_directory`, a scene file, a model file, which gets a camera and,
+/// unless it has some, light of its own, or "-", either of them on standard input. Which of them a file is its content
+/// says. Throws Error.
+Scene open_scene(const std::string& argument, const std::filesystem::path& scenes_directory,
+                 const ModelSource& read_model = load_model_here);
 
 struct SceneEntry {
     std::string name, description;
@@ -167,9 +195,10 @@ struct SceneEntry {
 std::vector<SceneEntry> list_scenes(const std::filesystem::path& scenes_directory);
 
 /// Read a scene file. Throws Error with file:line:column, what was expected and the nearest name.
-Scene read_scene(const std::filesystem::path& file);
+Scene read_scene(const std::filesystem::path& file, const ModelSource& read_model = load_model_here);
 /// The same from text; `origin` names it in messages and anchors relative files.
-Scene parse_scene(const std::string& yaml, const std::filesystem::path& origin);
+Scene parse_scene(const std::string& yaml, const std::filesystem::path& origin,
+                  const ModelSource& read_model = load_model_here);
 /// A file's `description:` alone, without making anything.
 std::string read_scene_description(const std::filesystem::path& file);
 

@@ -78,11 +78,12 @@ std::string light_calls(const std::vector<LightCode>& lights) {
         if (lights[i].kind == Light::Kind::directional) {
             text += "        vec3 to_light = -light.direction.xyz;\n        float strength = 1.0;\n";
         } else {
-            text += "        vec3 offset = light.position.xyz - v_position;\n"
+            text += "        vec3 offset = light.position.xyz - v_offset;\n"
                     "        float distance = length(offset);\n"
-                    "        vec3 to_light = offset / max(distance, 1e-6);\n"
+                    "        vec3 to_light = offset / max(distance, 1e-30);\n"
                     "        float strength = scene_attenuation(light.attenuation.xyz, distance);\n";
         }
+        if (lights[i].ranged) text += "        strength *= scene_range(light.attenuation.w, distance);\n";
         if (lights[i].kind == Light::Kind::spot) text += "        strength *= scene_cone(light, to_light);\n";
         if (lights[i].shadow_layer >= 0) {
             text += fmt::format("        strength *= scene_shadow({}, surface.normal, to_light);\n",
@@ -92,6 +93,19 @@ std::string light_calls(const std::vector<LightCode>& lights) {
             "        sum += scene_reflect(light.color.rgb * strength, surface, to_light, to_eye);\n    }\n";
     }
     return text + "    return sum;\n}\n";
+}
+
+std::string surface_constants(const SurfaceCode& code) {
+    const std::pair<const char*, bool> constants[] = {
+        {"PLACED", code.placed},         {"EXTRA", code.extra},
+        {"NORMAL_MAP", code.normal_map}, {"METAL_ROUGH", code.metal_rough},
+        {"OCCLUDED", code.occluded},     {"CUT", code.cut},
+        {"UNLIT", code.unlit},
+    };
+    std::string text;
+    for (const auto& [name, value] : constants)
+        text += fmt::format("const bool SCENE_{} = {};\n", name, value);
+    return text;
 }
 
 /// Depth and number of the nearest sample.
@@ -134,11 +148,25 @@ gl::Program link(const ShaderText& vertex, const ShaderText& fragment, const std
 
 } // namespace
 
-gl::Program make_mesh_program(const OutputNames& outputs, bool textured,
+SurfaceCode surface_code(const Material& material, bool extra) {
+    const auto placed = [](const Texture& texture) { return texture && texture.is_placed(); };
+    return {.textured = material.textured(),
+            .placed = placed(material.diffuse_texture) || placed(material.emission_texture)
+                      || placed(material.normal_texture) || placed(material.metal_roughness_texture)
+                      || placed(material.occlusion_texture),
+            .extra = extra,
+            .normal_map = bool(material.normal_texture),
+            .metal_rough = material.metal_rough,
+            .occluded = bool(material.occlusion_texture),
+            .cut = material.alpha_cutoff > 0,
+            .unlit = material.unlit};
+}
+
+gl::Program make_mesh_program(const OutputNames& outputs, const SurfaceCode& surface,
                               const std::vector<LightCode>& lights) {
     ShaderText fragment;
-    fragment.file("view.glsl").file("material.glsl");
-    fragment.file(textured ? "surface_textured.glsl" : "surface_plain.glsl");
+    fragment.made(surface_constants(surface)).file("view.glsl").file("material.glsl");
+    fragment.file(surface.textured ? "surface_textured.glsl" : "surface_plain.glsl");
     fragment.file("lighting.glsl").made(light_calls(lights)).file("shade.glsl");
     fragment.made(mesh_outputs(outputs)).file("mesh.frag.glsl");
     return link(ShaderText().file("view.glsl").file("mesh.vert.glsl"), fragment, "scene mesh");

@@ -6,6 +6,7 @@
 
 #include <gl/objects.hpp>
 
+#include <compare>
 #include <string>
 #include <vector>
 
@@ -19,11 +20,27 @@ using OutputNames = std::vector<std::string>;
 struct LightCode {
     Light::Kind kind;
     int shadow_layer = -1; ///< -1: casts none
+    bool ranged = false;   ///< it has an end
 };
+
+/// What the shader has to know of a surface beforehand, so that what a surface does not have costs nothing.
+struct SurfaceCode {
+    bool textured = false;
+    bool placed = false; ///< some texture is not read at the vertices' first uv as it is
+    bool extra = false;  ///< its vertices have a second uv and an opacity
+    bool normal_map = false;
+    bool metal_rough = false;
+    bool occluded = false; ///< has an occlusion texture
+    bool cut = false;      ///< is not there where its alpha is low
+    bool unlit = false;
+
+    auto operator<=>(const SurfaceCode&) const = default;
+};
+SurfaceCode surface_code(const Material& material, bool extra);
 
 /// One call per light, rather than a loop over all kinds: software rasterizers run every branch of a loop's
 /// body.
-gl::Program make_mesh_program(const OutputNames& outputs, bool textured,
+gl::Program make_mesh_program(const OutputNames& outputs, const SurfaceCode& surface,
                               const std::vector<LightCode>& lights);
 /// Only depth, at exactly the same depth as make_mesh_program.
 gl::Program make_depth_program();

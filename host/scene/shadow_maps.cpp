@@ -2,6 +2,7 @@
 
 #include "projection.hpp"
 
+#include <glm/gtc/matrix_transform.hpp>
 #include <glm/gtc/type_ptr.hpp>
 
 #include <algorithm>
@@ -12,6 +13,8 @@ namespace {
 
 constexpr int map_size = 1024;
 constexpr double widest_spot = 120; ///< degrees; beyond, texels in the middle get too coarse
+/// A directional light's near plane scales with what it covers, which may be a model of a millimetre.
+constexpr double nearest_of_extent = 0.0025;
 
 /// The light as a camera: to view from the light's node, and the projection.
 Camera light_camera(const Light& light, const glm::dmat4& place, const Camera& viewer) {
@@ -30,9 +33,10 @@ Camera light_camera(const Light& light, const glm::dmat4& place, const Camera& v
         in_light = glm::dvec3(std::floor(in_light.x / texel) * texel, std::floor(in_light.y / texel) * texel,
                               in_light.z + 2 * extent);
         frame[3] = glm::dvec4(glm::dmat3(frame) * in_light, 1);
-        camera = Camera::parallel(extent, 0.1, 4 * extent);
+        camera = Camera::parallel(extent, nearest_of_extent * extent, 4 * extent);
     } else {
-        camera = Camera::perspective(std::min(2 * static_cast<double>(light.outer_angle), widest_spot), 0.05);
+        camera = Camera::perspective(std::min(2 * static_cast<double>(light.outer_angle), widest_spot),
+                                     static_cast<double>(light.shadow_near));
     }
     std::copy_n(glm::value_ptr(frame), 16, camera.view_to_world.begin());
     return camera;
@@ -82,7 +86,7 @@ void ShadowMaps::draw(const Scene& scene, const std::vector<glm::dmat4>& nodes, 
         const Camera eye = light_camera(light, nodes[light.node], camera);
         const Projection projection = make_projection(eye, 1);
         const glm::dmat4 light_to_world = glm::make_mat4(eye.view_to_world.data());
-        map.world_to_clip = glm::mat4(projection.view_to_clip * glm::inverse(light_to_world));
+        map.world_to_clip = projection.view_to_clip * glm::inverse(light_to_world);
         map.texel = static_cast<float>(2 * projection.half_extent.y / map_size);
 
         const GLfloat far_away = 0;
@@ -90,9 +94,10 @@ void ShadowMaps::draw(const Scene& scene, const std::vector<glm::dmat4>& nodes, 
         glClearNamedFramebufferfv(map.framebuffer.name(), GL_DEPTH, 0, &far_away);
         for (const DrawPart& part : buffers.parts()) {
             if (scene.materials[part.material].blended) continue;
-            const glm::mat4 to_world(nodes[part.node]);
+            const glm::dmat4& to_world = nodes[part.node];
             if (outside(map.world_to_clip, part.bounds.transformed(to_world))) continue;
-            glUniformMatrix4fv(0, 1, GL_FALSE, glm::value_ptr(map.world_to_clip * to_world));
+            const glm::mat4 to_light(map.world_to_clip * to_world);
+            glUniformMatrix4fv(0, 1, GL_FALSE, glm::value_ptr(to_light));
             glDrawElementsBaseVertex(GL_TRIANGLES, part.index_count, GL_UNSIGNED_INT,
                                      reinterpret_cast<const void*>(part.first_index), part.base_vertex);
         }
@@ -100,9 +105,9 @@ void ShadowMaps::draw(const Scene& scene, const std::vector<glm::dmat4>& nodes, 
     glDisable(GL_POLYGON_OFFSET_FILL);
 }
 
-void ShadowMaps::describe(ViewBlock& view) const {
+void ShadowMaps::describe(ViewBlock& view, glm::dvec3 eye) const {
     for (std::size_t layer = 0; layer < maps_.size(); ++layer) {
-        view.world_to_shadow[layer] = maps_[layer].world_to_clip;
+        view.offset_to_shadow[layer] = glm::mat4(glm::translate(maps_[layer].world_to_clip, eye));
         view.shadow_texel[layer] = {maps_[layer].texel, maps_[layer].softness, 0, 0};
     }
 }
@@ -110,7 +115,7 @@ void ShadowMaps::describe(ViewBlock& view) const {
 std::vector<LightCode> ShadowMaps::light_codes(const Scene& scene) const {
     std::vector<LightCode> codes;
     for (std::size_t i = 0; i < std::min(scene.lights.size(), max_lights); ++i)
-        codes.push_back({scene.lights[i].kind, -1});
+        codes.push_back({scene.lights[i].kind, -1, scene.lights[i].range > 0});
     for (std::size_t layer = 0; layer < maps_.size(); ++layer)
         codes[maps_[layer].light].shadow_layer = static_cast<int>(layer);
     return codes;

@@ -21,8 +21,8 @@ public:
     /// Draw every map. Expects reversed depth and depth test as the scene has them.
     void draw(const Scene& scene, const std::vector<glm::dmat4>& nodes, const Camera& camera,
               const SceneBuffers& buffers);
-    /// Tell the shader where they are.
-    void describe(ViewBlock& view) const;
+    /// Tell the shader where they are, from an eye that is there in the world.
+    void describe(ViewBlock& view, glm::dvec3 eye) const;
     /// Every light's kind and layer, in the scene's order.
     std::vector<LightCode> light_codes(const Scene& scene) const;
     GLuint texture() const { return texture_.name(); }
@@ -31,7 +31,7 @@ private:
     struct Map {
         std::size_t light;
         gl::Framebuffer framebuffer;
-        glm::mat4 world_to_clip{1};
+        glm::dmat4 world_to_clip{1};
         float texel = 0;    ///< metres at clip w = 1
         float softness = 0; ///< texels
     };

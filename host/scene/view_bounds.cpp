@@ -12,8 +12,8 @@
 namespace postfx::host {
 namespace {
 
-/// Vertices go through four sums of three products in float32, of numbers as large as the distances from the origin
-/// and from the eye: less than 16 roundings of 2^-24.
+/// Vertices go through four sums of three products in float32, of numbers as large as the distances from the node's
+/// origin and from the eye: less than 16 roundings of 2^-24.
 constexpr double position_error = 1e-6;
 
 /// Of a depth sample, interpolated in float32 over a triangle that may lie mostly out of view: up to 1e-6 was seen.
@@ -149,22 +149,28 @@ bool shines(glm::vec3 color) {
 bool lit_by(const Surroundings& around, const Material& material) {
     const bool mirrors = shines(around.zenith) || shines(around.horizon) || shines(around.ground);
     const bool ambient = shines(around.ambient_up) || shines(around.ambient_down);
-    return mirrors || (ambient && shines(material.diffuse));
+    return !material.unlit && (mirrors || (ambient && shines(material.diffuse)));
 }
 
 } // namespace
 
 ViewBounds::ViewBounds(const Scene& scene) : scene_(scene) {
     std::map<const Mesh*, Bounds> known;
+    std::map<const Mesh*, std::shared_ptr<const MovingBounds>> known_moving;
     for (std::size_t node = 0; node < scene.nodes.size(); ++node) {
         for (const Part& part : scene.nodes[node].parts) {
             if (part.mesh->indices.empty()) continue;
             const auto [bounds, is_new] = known.try_emplace(part.mesh.get());
             if (is_new) bounds->second = part.mesh->bounds();
             const Material& material = scene.materials[part.material];
-            boxes_.push_back({node, glm::dvec3(bounds->second.low), glm::dvec3(bounds->second.high),
-                              !material.blended, shines(material.emission),
-                              lit_by(scene.surroundings, material)});
+            std::shared_ptr<const MovingBounds> moving;
+            if (part.mesh->deformation) {
+                std::shared_ptr<const MovingBounds>& shared = known_moving[part.mesh.get()];
+                if (!shared) shared = std::make_shared<const MovingBounds>(*part.mesh);
+                moving = shared;
+            }
+            boxes_.push_back({node, bounds->second, !material.blended, shines(material.emission),
+                              lit_by(scene.surroundings, material), std::move(moving)});
         }
     }
 }
@@ -175,7 +181,6 @@ SceneBounds ViewBounds::at(double time, const Camera& camera, int width, int hei
     const Frustum frustum = frustum_of(camera, projection);
     const glm::dmat4 view_to_world = glm::make_mat4(camera.view_to_world.data());
     const glm::dmat4 world_to_view = glm::inverse(view_to_world);
-    const double eye_from_origin = glm::length(glm::dvec3(view_to_world[3]));
 
     SceneBounds bounds{.nearest = SceneBounds::infinity,
                        .farthest = 0,
@@ -184,14 +189,18 @@ SceneBounds ViewBounds::at(double time, const Camera& camera, int width, int hei
                        .highest = -SceneBounds::infinity,
                        .empty = {}};
     bool surfaces = false, emission = false, ambient = false;
-    for (const PartBox& box : boxes_) {
+    for (PartBox& box : boxes_) {
+        if (box.moving) {
+            box.box =
+                box.moving->at(scene_.shape_weights(box.node, time), scene_.joint_matrices(box.node, nodes_));
+        }
         const glm::dmat4 to_view = world_to_view * nodes_[box.node];
-        const Corners corners = corners_of(box.low, box.high, to_view);
+        const Corners corners = corners_of(box.box.low, box.box.high, to_view);
         double reach = 0;
         for (const glm::dvec3& corner : corners)
             reach = std::max(reach, glm::length(corner));
-        const double slack = position_error * (2 * eye_from_origin + reach);
-        const Polygon shared = shared_corners(corners, box.low, box.high, to_view, frustum, slack);
+        const double slack = position_error * (2 * glm::length(glm::dvec3(to_view[3])) + reach);
+        const Polygon shared = shared_corners(corners, box.box.low, box.box.high, to_view, frustum, slack);
         if (shared.empty()) continue;
         emission = emission || box.emits;
         ambient = ambient || box.lit_by_surroundings;

@@ -1,6 +1,7 @@
 // What a camera can see of a scene at most: near and far, high and low, lit and shining. No OpenGL.
 #pragma once
 
+#include "moving_bounds.hpp"
 #include "scene.hpp"
 
 #include <postfx/camera.hpp>
@@ -27,8 +28,9 @@ private:
     /// A part of a node, as a box of the node's space.
     struct PartBox {
         std::size_t node;
-        glm::dvec3 low, high;
+        Bounds box;
         bool opaque, emits, lit_by_surroundings;
+        std::shared_ptr<const MovingBounds> moving; ///< null: it keeps its shape
     };
 
     const Scene& scene_;

@@ -4,10 +4,11 @@
 #include <glm/glm.hpp>
 #include <yaml-cpp/yaml.h>
 
-#include <initializer_list>
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -34,6 +35,9 @@ public:
     int integer(Range range) const;
     bool toggle() const;
     std::string text() const;
+    /// The file of that name, seen from the document's own folder; `expected` says what it ought to be. It is there and
+    /// no folder.
+    std::filesystem::path named_file(std::string_view expected) const;
     /// One of these words.
     std::string choice(const std::vector<std::string>& words) const;
     /// [x, y, z]; every number within range.
@@ -41,11 +45,15 @@ public:
     glm::dvec2 pair(Range range) const;
     /// [r, g, b], or one number for grey.
     glm::vec3 color(double high) const;
+    /// What a message says was found in place of a map with these keys.
+    std::string found(const std::vector<std::string>& keys) const;
     std::vector<YamlValue> list() const;
     /// The entries of a map in the file's order; a key that stands there twice is an error.
     std::vector<std::pair<YamlValue, YamlValue>> entries() const;
 
 private:
+    void refuse_decimal_comma(const YAML::Node& before, const YAML::Node& after) const;
+
     /// Behind a pointer because assigning a YAML::Node changes the document that it stands in.
     std::shared_ptr<const YAML::Node> node_;
     std::shared_ptr<const std::string> file_;

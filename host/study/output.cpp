@@ -6,6 +6,7 @@
 #include "plot.hpp"
 #include "tables.hpp"
 
+#include <base/read_file.hpp>
 #include <image/files.hpp>
 
 #include <postfx/error.hpp>
@@ -14,7 +15,6 @@
 #include <nlohmann/json.hpp>
 
 #include <fstream>
-#include <iterator>
 #include <map>
 
 namespace fs = std::filesystem;
@@ -22,15 +22,12 @@ namespace fs = std::filesystem;
 namespace postfx::host::study {
 namespace {
 
+constexpr std::size_t max_picture_bytes = std::size_t{1} << 28;
+
 void make_folder(const fs::path& folder) {
     std::error_code error;
     fs::create_directories(folder, error);
     if (error) throw Error(Place{.file = folder.string()}, fmt::format("can't be made: {}", error.message()));
-}
-
-std::string bytes_of(const fs::path& file) {
-    std::ifstream stream(file, std::ios::binary);
-    return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
 }
 
 /// Returns the files' bytes by "<effect>-<thumbnail>".
@@ -41,7 +38,7 @@ std::map<std::string, std::string> write_pictures(const fs::path& folder, const 
             const std::string name = effect.id + "-" + thumbnail.name;
             const fs::path file = folder / (name + ".png");
             write_codes(file, {thumbnail.width, thumbnail.height, 3, thumbnail.codes});
-            pictures[name] = bytes_of(file);
+            pictures[name] = read_file(file, max_picture_bytes, "a picture");
         }
     }
     return pictures;

@@ -1,14 +1,12 @@
 #include "spec.hpp"
 
+#include <base/read_file.hpp>
 #include <scene/yaml.hpp>
 
 #include <postfx/error.hpp>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-
-#include <fstream>
-#include <iterator>
 
 namespace postfx::host::study {
 namespace {
@@ -66,9 +64,8 @@ EffectSpec read_effect(const YamlValue& value, const EffectSpec& standard, const
 } // namespace
 
 Spec Spec::read(const std::filesystem::path& file) {
-    std::ifstream stream(file, std::ios::binary);
-    if (!stream) throw Error(Place{.file = file.string()}, "can't be read");
-    return parse({std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()}, file.string());
+    constexpr std::size_t max_bytes = std::size_t{1} << 20;
+    return parse(read_file(file, max_bytes, "a study"), input_name(file));
 }
 
 Spec Spec::parse(const std::string& yaml, const std::string& origin) {

@@ -34,9 +34,7 @@ public:
 
     Image64 of(Image64 light) const {
         for (double& value : light.values)
-            value = std::isnan(value)                ? 0
-                    : std::isinf(value) && value > 0 ? most_light
-                                                     : std::max(0.0, value);
+            value = std::isnan(value) ? 0 : std::clamp(value, 0.0, most_light);
         if (guard_ > 0) light = guarded(light);
         if (!has_threshold_) return light;
         for (std::size_t i = 0; i < light.values.size(); i += 3) {

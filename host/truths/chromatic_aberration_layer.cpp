@@ -2,10 +2,10 @@
 // magnification.
 #include "drawn_scene.hpp"
 #include "lens_spectrum.hpp"
-#include "rows.hpp"
 #include "sampling.hpp"
 #include "spline_picture.hpp"
 #include "truth.hpp"
+#include <image/rows.hpp>
 
 #include <fmt/format.h>
 
@@ -32,7 +32,8 @@ public:
     explicit Wavelengths(const TruthRequest& request)
         : width_(request.width), height_(request.height), strength_(request.value("strength")),
           spectrum_(strength_, request.width, request.height),
-          axis_(request.scene.camera_at(request.time).principal_point), picture_(counted(given_light(request))) {}
+          axis_(request.scene.camera_at(request.time).principal_point),
+          picture_(counted(given_light(request))) {}
 
     std::string description(int samples) const override {
         return fmt::format(

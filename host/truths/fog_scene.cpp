@@ -1,9 +1,9 @@
 // Fog along each pixel's ray, by quadrature.
 #include "drawn_scene.hpp"
 #include "fog_path.hpp"
-#include "rows.hpp"
 #include "truth.hpp"
 #include "view_rays.hpp"
+#include <image/rows.hpp>
 
 #include <algorithm>
 #include <cmath>

@@ -1,9 +1,9 @@
 // Film grain by its making: layers of discs, seen through the pixels' squares.
 #include "drawn_scene.hpp"
 #include "film.hpp"
-#include "rows.hpp"
 #include "sampling.hpp"
 #include "truth.hpp"
+#include <image/rows.hpp>
 
 #include <fmt/format.h>
 
@@ -64,16 +64,22 @@ public:
             double& light = result.values[i];
             if (!has_grain(light)) continue;
             const double u = grainy_light(light);
-            const double field =
-                sum.values[i] / count * std::sqrt(u * (1 - u) / statistics.pixel_variance(u));
-            const double noise = amount_ * std::min(1.0, size_) * std::sqrt(u * (1 - u)) * field;
-            const double room = std::min(light, 1 - light);
-            light += std::clamp(noise, -room, room);
+            // A field is at least -sqrt(u / (1 - u)) * largest_field() where nothing is covered, at most the same of
+            // 1 - u where all is: up to that deviation the picture stays within 0..1 by itself, and keeps its mean.
+            const double wanted =
+                amount_ * std::min(1.0, size_) * u * (1 - u) / std::sqrt(statistics.pixel_variance(u));
+            const double possible = std::sqrt(u * (1 - u)) / largest_field();
+            light += std::min(wanted, possible) * sum.values[i] / count;
         }
         return result;
     }
 
 private:
+    /// In units of sqrt(u / (1 - u)) or its inverse.
+    double largest_field() const {
+        return std::sqrt((1 - color_) * common_layers_) + std::sqrt(color_ * own_layers_);
+    }
+
     static bool has_grain(double light) { return light > 0 && light < 1; }
 
     double noise(int x, int y, int channel, glm::dvec2 place) const {

@@ -4,10 +4,10 @@
 #include "drawn_scene.hpp"
 #include "metric.hpp"
 #include "rim_share.hpp"
-#include "rows.hpp"
 #include "sampling.hpp"
 #include "scene_rays.hpp"
 #include "view_rays.hpp"
+#include <image/rows.hpp>
 
 #include <fmt/format.h>
 

@@ -64,7 +64,8 @@ SceneRays::SceneRays(const Scene& scene, double time) : state_(std::make_unique<
     scene.place_nodes(time, state_->nodes);
     for (std::size_t i = 0; i < scene.nodes.size(); ++i) {
         for (const Part& part : scene.nodes[i].parts) {
-            if (!scene.materials[part.material].blended) state_->add(part.mesh, state_->nodes[i]);
+            if (!scene.materials[part.material].blended)
+                state_->add(scene.mesh_at(i, part.mesh, state_->nodes, time), state_->nodes[i]);
         }
     }
     rtcCommitScene(state_->scene);

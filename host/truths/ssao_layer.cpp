@@ -2,9 +2,9 @@
 #include "drawn_scene.hpp"
 #include "height_field.hpp"
 #include "occluded_light.hpp"
-#include "rows.hpp"
 #include "sampling.hpp"
 #include "truth.hpp"
+#include <image/rows.hpp>
 
 #include <fmt/format.h>
 

@@ -1,10 +1,10 @@
 // Ambient occlusion of the scene itself: rays from what each pixel shows, against the scene's triangles.
 #include "drawn_scene.hpp"
 #include "occluded_light.hpp"
-#include "rows.hpp"
 #include "sampling.hpp"
 #include "scene_rays.hpp"
 #include "truth.hpp"
+#include <image/rows.hpp>
 
 #include <scene/projection.hpp>
 

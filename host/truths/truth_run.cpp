@@ -1,5 +1,6 @@
 #include "truth_run.hpp"
 
+#include <base/read_file.hpp>
 #include <image/files.hpp>
 
 #include <postfx/error.hpp>
@@ -22,12 +23,8 @@ namespace {
 /// Of the file of sums; a change of what any truth sums up makes it another.
 constexpr int file_version = 1;
 
-std::string bytes_of(const fs::path& file) {
-    std::ifstream stream(file, std::ios::binary);
-    std::ostringstream bytes;
-    bytes << stream.rdbuf();
-    return bytes.str();
-}
+/// Of what is read whole here: a scene's or model's file, a truth's sums.
+constexpr std::size_t max_bytes = std::size_t{1} << 36;
 
 /// FNV-1a, 64 bits: the same everywhere, which std::hash is not.
 constexpr std::uint64_t hash_of_nothing = 0xcbf29ce484222325u;
@@ -39,7 +36,8 @@ std::uint64_t hash(const void* bytes, std::size_t count, std::uint64_t value = h
 
 /// The scene's text and its meshes, which models and generators make that the text only names.
 std::string scene_key(const Scene& scene) {
-    const std::string text = fs::is_regular_file(scene.file) ? bytes_of(scene.file) : std::string();
+    const bool has_file = scene.content.empty() && fs::is_regular_file(scene.file);
+    const std::string text = has_file ? read_file(scene.file, max_bytes, "a scene") : scene.content;
     std::uint64_t value = hash(text.data(), text.size());
     std::set<const Mesh*> meshes;
     for (const Node& node : scene.nodes) {
@@ -138,7 +136,7 @@ void TruthRun::save(const fs::path& file) const {
 bool TruthRun::resume(const fs::path& file) {
     if (!fs::exists(file)) return false;
     const Place place{.file = file.string()};
-    const std::string bytes = bytes_of(file);
+    const std::string bytes = read_file(file, max_bytes, "a truth's sums");
     const std::size_t line_end = bytes.find('\n');
     const auto header = nlohmann::json::parse(bytes.substr(0, line_end), nullptr, false);
     if (line_end == std::string::npos || !header.is_object())

@@ -15,7 +15,7 @@ struct Gain {
     bool natural = true;
     double strength = 1;
     double radius = 0, softness = 1, roundness = 1; ///< artistic
-    double tangent = 0; ///< of half the vertical field of view; 0 for parallel rays
+    double tangent = 0;           ///< of half the vertical field of view; 0 for parallel rays
     std::array<double, 2> axis{}; ///< as Camera::principal_point
     int width = 1, height = 1;
 

@@ -8,12 +8,13 @@
 namespace postfx::host {
 namespace {
 
-constexpr double metres_per_second = 4, fast_factor = 6;
+constexpr double fast_factor = 6;
 constexpr double steepest = 89; ///< degrees; straight up, "right" would be undefined
 
 } // namespace
 
-FlyCamera::FlyCamera(const Camera& camera) : start_(camera) {
+FlyCamera::FlyCamera(const Camera& camera, double metres_per_second)
+    : start_(camera), metres_per_second_(metres_per_second) {
     const auto& m = camera.view_to_world;
     position_ = {m[12], m[13], m[14]};
     const glm::dvec3 looks = -glm::dvec3(m[8], m[9], m[10]);
@@ -33,7 +34,7 @@ void FlyCamera::steer(const Steering& steering, double seconds) {
     pitch_ = std::clamp(pitch_ + steering.turn.y, -steepest, steepest);
     const glm::dvec3 ahead = forward();
     const glm::dvec3 right = glm::normalize(glm::cross(ahead, glm::dvec3(0, 1, 0)));
-    const double distance = metres_per_second * (steering.fast ? fast_factor : 1) * seconds;
+    const double distance = metres_per_second_ * (steering.fast ? fast_factor : 1) * seconds;
     position_ +=
         distance
         * (steering.move.x * right + steering.move.y * glm::dvec3(0, 1, 0) + steering.move.z * ahead);

@@ -17,7 +17,7 @@ struct Steering {
 class FlyCamera {
 public:
     /// Starts where `camera` is and looks where it looks, without its roll.
-    explicit FlyCamera(const Camera& camera);
+    FlyCamera(const Camera& camera, double metres_per_second);
 
     void steer(const Steering& steering, double seconds);
     /// Has it left its start?
@@ -30,6 +30,7 @@ private:
     glm::dvec3 forward() const;
 
     Camera start_;
+    double metres_per_second_;
     glm::dvec3 position_;
     double yaw_, pitch_; ///< degrees; yaw 0 looks along -z, positive to the right
     bool moved_ = false;

@@ -1,10 +1,5 @@
 #include <postfx/numeric.glsl>
 
-// NaN to 0, and no value that weighted sums could carry out of the range of float32.
-vec3 bloom_repaired(vec3 light) {
-    return clamp(postfx_finite_or(light, 65504.0), vec3(-1e38), vec3(1e38));
-}
-
 bool bloom_is_finite(vec3 light) {
     return postfx_is_finite(light.r) && postfx_is_finite(light.g) && postfx_is_finite(light.b);
 }
@@ -13,10 +8,10 @@ float bloom_brightness(vec3 light) {
     return max(light.r, max(light.g, light.b));
 }
 
-// The share of finite light that glows: nothing below 0; in threshold mode what is above the threshold, along a
+// The share of finite light that glows: nothing below 0, and nothing above what is light; in threshold mode what is above the threshold, along a
 // parabola that meets 0 and `above` with their slopes.
 vec3 bloom_glowing(vec3 light, float knee_start, float knee_end) {
-    light = max(vec3(0.0), light);
+    light = clamp(light, vec3(0.0), vec3(POSTFX_BRIGHTEST));
     if (BLOOM_HAS_THRESHOLD == 0) return light;
     float brightness = bloom_brightness(light);
     if (brightness <= knee_start) return vec3(0.0);

@@ -15,6 +15,7 @@ namespace {
 
 using Line = std::vector<double>;
 constexpr double scatter = 0, threshold = 1, emission = 2; // values of `mode`
+constexpr double brightest = 65504;                        // light: the largest half float
 enum Level { low, medium, high, ultra, best, classic };
 
 /// (1 + z)^n / 2^n
@@ -143,9 +144,7 @@ public:
             for (int x = 0; x < image_.width; ++x) {
                 for (int c = 0; c < 3; ++c) {
                     const double value = image_.at(x, y, c);
-                    repaired_.at(x, y, c) = std::isnan(value)   ? 0
-                                            : std::isinf(value) ? std::copysign(65504, value)
-                                                                : value;
+                    repaired_.at(x, y, c) = std::isnan(value) ? 0 : std::clamp(value, -brightest, brightest);
                 }
             }
         }
@@ -161,14 +160,14 @@ public:
         return result;
     }
 
-    /// `low` takes the light of weighted means of 2x2 pixels, where all that it sees is finite.
+    /// `low` takes the light of weighted means of 2x2 pixels, where all that it sees is light.
     Image64 quarter() const {
         const bool guarded = input_.value("firefly_guard") > 0;
-        const Image64 from = guarded ? light() : repaired_;
+        const Image64 from = guarded ? light() : image_;
         Image64 result((image_.width + 3) / 4, (image_.height + 3) / 4, 3);
         for (int y = 0; y < result.height; ++y) {
             for (int x = 0; x < result.width; ++x) {
-                if (guarded || sees_finite(x, y)) {
+                if (guarded || sees_light(x, y)) {
                     add_means(result, x, y, from);
                 } else {
                     add_pixels(result, x, y);
@@ -192,11 +191,18 @@ private:
         };
         return image.at(fold(x, image.width), fold(y, image.height), c);
     }
-    bool sees_finite(int x, int y) const {
-        for (long j = 4 * y - 1; j <= 4 * y + 4; ++j) {
-            for (long i = 4 * x - 1; i <= 4 * x + 4; ++i) {
+    /// Of 2x2 pixels.
+    static double mean_at(const Image64& image, int x, int y, const Pair& row, const Pair& column, int c) {
+        const long i = 4L * x + column.first, j = 4L * y + row.first;
+        const double s = column.share_of_second, t = row.share_of_second;
+        return (1 - t) * ((1 - s) * mirrored_at(image, i, j, c) + s * mirrored_at(image, i + 1, j, c))
+               + t * ((1 - s) * mirrored_at(image, i, j + 1, c) + s * mirrored_at(image, i + 1, j + 1, c));
+    }
+    bool sees_light(int x, int y) const {
+        for (const Pair& row : pairs) {
+            for (const Pair& column : pairs) {
                 for (int c = 0; c < 3; ++c) {
-                    if (!std::isfinite(mirrored_at(image_, i, j, c))) return false;
+                    if (!(std::abs(mean_at(image_, x, y, row, column, c)) <= brightest)) return false;
                 }
             }
         }
@@ -206,15 +212,8 @@ private:
         for (const Pair& row : pairs) {
             for (const Pair& column : pairs) {
                 Image64 mean(1, 1, 3);
-                const long i = 4L * x + column.first, j = 4L * y + row.first;
-                const double s = column.share_of_second, t = row.share_of_second;
-                for (int c = 0; c < 3; ++c) {
-                    mean.at(0, 0, c) =
-                        (1 - t) * ((1 - s) * mirrored_at(from, i, j, c) + s * mirrored_at(from, i + 1, j, c))
-                        + t
-                              * ((1 - s) * mirrored_at(from, i, j + 1, c)
-                                 + s * mirrored_at(from, i + 1, j + 1, c));
-                }
+                for (int c = 0; c < 3; ++c)
+                    mean.at(0, 0, c) = mean_at(from, x, y, row, column, c);
                 if (input_.value("firefly_guard") == 0) let_glow(mean, 0, 0);
                 for (int c = 0; c < 3; ++c)
                     result.at(x, y, c) += row.weight * column.weight * mean.at(0, 0, c);
@@ -468,7 +467,7 @@ Image64 classic_glow_of(const ReferenceInput& input) {
 } // namespace
 
 Image64 postfx::testing::reference(const ReferenceInput& input) {
-    const int level = static_cast<int>(input.value("quality"));
+    const int level = input.level_among({"low", "medium", "high", "ultra", "reference", "classic"});
     const Image64 glow = level == classic ? classic_glow_of(input) : glow_of(input, level);
     const double intensity = input.value("radius") > 0 ? input.value("intensity") : 0; // neither: no glow
     Image64 result(glow.width, glow.height, 3);
@@ -479,7 +478,7 @@ Image64 postfx::testing::reference(const ReferenceInput& input) {
                 const double own = input.color.at(x, y, c);
                 double added = intensity * tint * glow.at(x, y, c);
                 if (input.value("mode") != scatter) {
-                    result.at(x, y, c) = own + std::min(added, std::max(0.0, 65504 - own));
+                    result.at(x, y, c) = own + std::min(added, std::max(0.0, brightest - own));
                     continue;
                 }
                 result.at(x, y, c) = (1 - intensity) * own + added;

@@ -18,6 +18,10 @@ constexpr float infinity = std::numeric_limits<float>::infinity();
 constexpr float not_a_number = std::numeric_limits<float>::quiet_NaN();
 enum Mode { scatter, threshold, emission };
 enum Level { low, medium, high, ultra, best, classic };
+std::string_view word_of(Level level) {
+    constexpr std::string_view words[] = {"low", "medium", "high", "ultra", "reference", "classic"};
+    return words[level];
+}
 constexpr Level all_levels[] = {low, medium, high, ultra, best, classic};
 constexpr Level pyramids[] = {low, medium, high, ultra, best}; // all but the one that loses light
 

@@ -21,9 +21,8 @@ constexpr postfx_level levels[] = {
     postfx::level("low",
                   "three images of different size: ghosts instead of fringes where they lie far apart"),
     postfx::level("medium", "samples of the spectrum at most 1.5 pixels apart, up to 2 x 12"),
-    postfx::level("high", "as medium, each sample by 12 pixels (Catmull-Rom) without ringing"),
-    postfx::level("ultra",
-                  "samples at most 0.75 pixels apart, up to 2 x 48, each by 6x6 pixels without ringing"),
+    postfx::level("high", "as medium, each sample the mean of an area, which keeps each pixel's light"),
+    postfx::level("ultra", "samples at most 0.75 pixels apart, up to 2 x 48, areas of higher order"),
     postfx::level("reference", "as ultra, samples at most 0.25 pixels apart, up to 2 x 256; slow"),
 };
 
@@ -31,7 +30,7 @@ constexpr postfx_level levels[] = {
 struct Sampling {
     double spacing; ///< largest distance of two samples, pixels
     int most;       ///< samples on either side of green; beyond, the spacing grows
-    int radius; ///< of the kernel that rebuilds the picture between pixels; 1: the sampler's linear filter
+    int radius; ///< 1: the sampler's linear filter; else of the pixels that an edge between two is rebuilt from
 };
 constexpr Sampling samplings[] = {{1.5, 12, 1}, {1.5, 12, 2}, {0.75, 48, 3}, {0.25, 256, 3}};
 
@@ -55,9 +54,9 @@ double corner_distance(const postfx::Request& in) {
 /// How far red and blue lie apart where that is most, in the corner that is farthest from the optical axis [px].
 double largest_distance(const postfx::Request& in) {
     const double* axis = in.camera().principal_point;
-    const double farthest = 0.5
-                            * std::hypot(1.0 + std::abs(axis[1]),
-                                         double(in.width()) / in.height() * (1.0 + std::abs(axis[0])));
+    const double farthest =
+        0.5
+        * std::hypot(1.0 + std::abs(axis[1]), double(in.width()) / in.height() * (1.0 + std::abs(axis[0])));
     return in.number("strength") * in.height() * (farthest / corner_distance(in));
 }
 
@@ -89,12 +88,15 @@ void declare_spectrum(const postfx::Request& in, postfx::Builder& out, double sh
     const Sampling& sampling = samplings[std::max(0, in.level() - medium)];
     const double pixels = largest_distance(in);
     const bool linear = sampling.radius == 1;
-    out.compose(linear ? "chromatic_aberration.glsl" : "chromatic_aberration_cubic.glsl")
+    out.compose(linear ? "chromatic_aberration.glsl" : "chromatic_aberration_areas.glsl")
         .reads("picture", out.color(), linear ? "linear" : "nearest")
         .value("red", share * red_end)
         .value("blue", share * blue_end)
         .constant("CHROMATIC_ABERRATION_RED_TAPS", taps(pixels * red_end, sampling))
         .constant("CHROMATIC_ABERRATION_BLUE_TAPS", taps(pixels * blue_end, sampling))
+        // Pixels that an area meets: its width is 1 + share.
+        .constant("CHROMATIC_ABERRATION_RED_MET", share * red_end > 0 ? 3 : 2)
+        .constant("CHROMATIC_ABERRATION_BLUE_MET", share * blue_end > 0 ? 3 : 2)
         .constant("CHROMATIC_ABERRATION_RADIUS", sampling.radius);
 }
 
@@ -121,7 +123,7 @@ void plan(const postfx::Request& in, postfx::Builder& out) {
     }
 }
 
-/// Filtered samples average; cubic kernels weigh differences by more than 1.
+/// Filtered samples average; parabolas weigh differences by more than 1.
 postfx::Gain gain(const postfx::Request& in) {
     return in.level() <= medium ? postfx::Gain{} : postfx::Gain::unknown();
 }

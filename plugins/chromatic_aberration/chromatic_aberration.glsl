@@ -1,21 +1,20 @@
 #include "chromatic_aberration_axis.glsl"
-#include "chromatic_aberration_light.glsl"
+#include "chromatic_aberration_filtered.glsl"
 #include "chromatic_aberration_spectrum.glsl"
 
 // Changes that one end of the spectrum makes to its own channel and to green; `light` has these two.
 vec2 chromatic_aberration_side(vec2 light, vec2 uv, vec2 displacement, bool is_red, int taps, sampler2D picture) {
     vec2 change = vec2(0.0);
     for (int i = 1; i <= taps; ++i) {
-        vec3 found = textureLod(picture, uv + (float(i) / float(taps)) * displacement, 0.0).rgb;
-        vec2 here = chromatic_aberration_light(is_red ? found.rg : found.bg);
-        change += chromatic_aberration_weights(i, taps) * (here - light);
+        vec3 found = chromatic_aberration_filtered(uv + (float(i) / float(taps)) * displacement, picture);
+        change += chromatic_aberration_weights(i, taps) * ((is_red ? found.rg : found.bg) - light);
     }
     return change;
 }
 
 vec3 chromatic_aberration(vec3 color, Pixel pixel, ChromaticAberrationParams params, sampler2D picture) {
     vec2 from_axis = pixel.uv - chromatic_aberration_axis();
-    vec3 light = chromatic_aberration_light(color);
+    vec3 light = postfx_light(color);
     vec2 red = chromatic_aberration_side(light.rg, pixel.uv, from_axis * params.red, true,
                                          CHROMATIC_ABERRATION_RED_TAPS, picture);
     vec2 blue = chromatic_aberration_side(light.bg, pixel.uv, from_axis * params.blue, false,

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
+#include <utility>
 
 namespace postfx::testing {
 namespace {
@@ -20,63 +22,90 @@ double texel(const Image64& image, double i, double j, int channel) {
                     static_cast<int>(std::clamp(j, 0.0, image.height - 1.0)), channel);
 }
 
-/// The value at 0 < t < 1 between the middle two of n samples at integers, by cubic convolution.
-/// Four: the cubic with those values and, as slopes, half the difference of each one's neighbours.
-double between(const std::array<double, 4>& v, double t) {
-    const double m0 = (v[2] - v[0]) / 2, m1 = (v[3] - v[1]) / 2, s = 1 - t;
-    return v[1] * (1 + 2 * t) * s * s + m0 * t * s * s + v[2] * t * t * (3 - 2 * t) - m1 * t * t * s;
+double held(double value, double a, double b) {
+    return std::clamp(value, std::min(a, b), std::max(a, b));
 }
 
-/// Six: likewise, with slopes that are exact for cubics.
-double between(const std::array<double, 6>& v, double t) {
-    const auto slope = [&](int i) { return (8 * (v[i + 1] - v[i - 1]) - (v[i + 2] - v[i - 2])) / 12; };
-    const double s = 1 - t;
-    return v[2] * (1 + 2 * t) * s * s + slope(2) * t * s * s + v[3] * t * t * (3 - 2 * t)
-           - slope(3) * t * t * s;
-}
+/// A line of pixels whose light is a parabola in each of them. A pixel reaches from its index to the next.
+class Line {
+public:
+    using Pixels = std::function<double(int)>;
+    Line(Pixels pixels, bool fourth_order) : pixels_(std::move(pixels)), fourth_order_(fourth_order) {}
 
-/// Kept from ringing: within the range of the middle four.
-template<std::size_t n>
-double held(double value, const std::array<double, n>& v) {
-    const auto [least, most] = std::minmax_element(v.begin() + (n / 2 - 2), v.begin() + (n / 2 + 2));
-    return std::clamp(value, *least, *most);
-}
-
-/// Edges clamped; x and y in pixels from the corner of the picture. Every pixel is counted().
-template<std::size_t n>
-double cubic_sample(const Image64& image, double x, double y, int channel) {
-    const double left = std::floor(x - 0.5), below = std::floor(y - 0.5);
-    const int half = n / 2;
-    const double first = 1.0 - half;
-    std::array<double, n> lines{};
-    for (std::size_t j = 0; j < n; ++j) {
-        std::array<double, n> line{};
-        for (std::size_t i = 0; i < n; ++i) {
-            line[i] = counted(texel(image, left + first + double(i), below + first + double(j), channel));
-        }
-        const double t = x - 0.5 - left;
-        // Of four lines the first and the last are straight.
-        const bool straight = n == 4 && (j == 0 || j == 3);
-        lines[j] = straight ? line[1] * (1 - t) + line[2] * t : held(between(line, t), line);
+    double mean(double from, double to) const {
+        double light = 0;
+        for (int i = static_cast<int>(std::floor(from)); i < to; ++i)
+            light += integral(i, std::max(from, double(i)) - i, std::min(to, i + 1.0) - i);
+        return light / (to - from);
     }
-    return held(between(lines, y - 0.5 - below), lines);
+
+private:
+    /// Between pixel i - 1 and i.
+    double edge(int i) const {
+        const double middle = (pixels_(i - 1) + pixels_(i)) / 2;
+        if (!fourth_order_) return middle;
+        const double outer = (pixels_(i - 2) + pixels_(i + 1)) / 2;
+        return held(middle + (middle - outer) / 6, pixels_(i - 1), pixels_(i));
+    }
+    double bend(int i) const { return pixels_(i - 1) - 2 * pixels_(i) + pixels_(i + 1); }
+
+    /// Of pixel i's light between two places in 0..1, by Simpson's rule, which is exact.
+    double integral(int i, double from, double to) const {
+        const double mean = pixels_(i);
+        double left = edge(i), right = edge(i + 1);
+        // By the theory a parabola of that mean stays between its ends if the mean is in their middle third.
+        const double third = (right - left) / 3;
+        if ((mean - left) * (right - mean) <= 0 || std::abs(2 * mean - left - right) > std::abs(third)) {
+            const double second = 6 * (left + right - 2 * mean); // derivative
+            double share = mean > left && mean > right ? 1 : 0;  // the top of a bright pixel stays
+            if (fourth_order_ && share == 0) {
+                const double sign = second < 0 ? -1 : 1;
+                const double least = std::min({sign * bend(i - 1), sign * bend(i), sign * bend(i + 1)});
+                share = second == 0 ? 0 : std::clamp(1.25 * least / std::abs(second), 0.0, 1.0);
+            }
+            double calm_left = mean, calm_right = mean;
+            if ((mean - left) * (right - mean) > 0) {
+                // The extremum is moved to the nearer end.
+                const bool near_left = std::abs(mean - left) < std::abs(right - mean);
+                calm_left = near_left ? left : mean - 2 * (right - mean);
+                calm_right = near_left ? mean + 2 * (mean - left) : right;
+            }
+            left = share * left + (1 - share) * calm_left;
+            right = share * right + (1 - share) * calm_right;
+        }
+        const double middle = (6 * mean - left - right) / 4; // value there
+        const auto at = [&](double x) {
+            return left * (1 - x) * (1 - 2 * x) + middle * 4 * x * (1 - x) + right * x * (2 * x - 1);
+        };
+        return (to - from) / 6 * (at(from) + 4 * at((from + to) / 2) + at(to));
+    }
+
+    Pixels pixels_;
+    bool fourth_order_;
+};
+
+/// Mean over the area that a pixel shows of an image 1 + scale times as large about the axis [pixels]. Beyond the picture
+/// its edge counts.
+double area_mean(const Image64& image, int x, int y, double axis_x, double axis_y, double scale, int channel,
+                 bool fourth_order) {
+    const double left = x + scale * (x - axis_x), below = y + scale * (y - axis_y);
+    const Line column(
+        [&](int j) {
+            const Line line([&](int i) { return counted(texel(image, i, j, channel)); }, fourth_order);
+            return line.mean(left, left + 1 + scale);
+        },
+        fourth_order);
+    return column.mean(below, below + 1 + scale);
 }
 
-/// A sample of a filtered texture is counted() as a whole.
 double linear_sample(const Image64& image, double x, double y, int channel) {
     const double left = std::floor(x - 0.5), below = std::floor(y - 0.5);
     const double right_share = x - 0.5 - left, upper_share = y - 0.5 - below;
     const auto line = [&](double j) {
-        return texel(image, left, j, channel) * (1 - right_share)
-               + texel(image, left + 1, j, channel) * right_share;
+        return counted(texel(image, left, j, channel)) * (1 - right_share)
+               + counted(texel(image, left + 1, j, channel)) * right_share;
     };
-    return counted(line(below) * (1 - upper_share) + line(below + 1) * upper_share);
-}
-
-double sample(const Image64& image, double x, double y, int channel, int level) {
-    if (level == high) return cubic_sample<4>(image, x, y, channel);
-    if (level > high) return cubic_sample<6>(image, x, y, channel);
-    return linear_sample(image, x, y, channel);
+    return line(below) * (1 - upper_share) + line(below + 1) * upper_share;
 }
 
 /// Integrals over 0..1 of (constant + slope * t) times the hat function of node k of n + 1, by Simpson's
@@ -101,8 +130,9 @@ struct Place {
     int x, y, level;
 
     double at(double scale, int channel) const {
+        if (level >= high) return area_mean(image, x, y, axis_x, axis_y, scale, channel, level > high);
         const double px = x + 0.5, py = y + 0.5;
-        return sample(image, px + (px - axis_x) * scale, py + (py - axis_y) * scale, channel, level);
+        return linear_sample(image, px + (px - axis_x) * scale, py + (py - axis_y) * scale, channel);
     }
 };
 
@@ -138,7 +168,7 @@ double focus_value(const ReferenceInput& input, int x, int y) {
 
 Image64 reference(const ReferenceInput& input) {
     const Image64& image = input.color;
-    const int level = static_cast<int>(input.value("quality"));
+    const int level = input.level_among({"classic", "low", "medium", "high", "ultra", "reference"});
     const double strength = input.value("strength");
     const auto index = [](double micrometres) { return std::pow(micrometres, -2); }; // Cauchy, up to a factor
     const double whole = index(0.464) - index(0.612);
@@ -164,9 +194,9 @@ Image64 reference(const ReferenceInput& input) {
             const auto half = [&](int channel, double end, double constant, double slope) {
                 return half_spectrum(place, channel, share * end, pixels * end, constant, slope);
             };
-            result.at(x, y, 0) = half(0, red, 0, 2);
-            result.at(x, y, 1) = half(1, red, 1, -1) + half(1, blue, 1, -1);
-            result.at(x, y, 2) = half(2, blue, 0, 2);
+            result.at(x, y, 0) = counted(half(0, red, 0, 2));
+            result.at(x, y, 1) = counted(half(1, red, 1, -1) + half(1, blue, 1, -1));
+            result.at(x, y, 2) = counted(half(2, blue, 0, 2));
         }
     }
     return result;

@@ -1,6 +1,6 @@
 #include "depth_of_field_circle.glsl"
-#include "depth_of_field_light.glsl"
 #include "depth_of_field_share.glsl"
+#include <postfx/numeric.glsl>
 
 // A reduced layer at a pixel, interpolated. In blocks of an odd number of pixels one lies on the texel's centre,
 // where the sampler's rounding would let neighbours in that must count for nothing: there the four taps are weighted
@@ -30,7 +30,7 @@ vec3 depth_of_field(vec3 color, Pixel pixel, DepthOfFieldParams params, sampler2
     vec4 before = depth_of_field_layer(foreground, pixel.position, params.layer_scale);
     vec4 behind = depth_of_field_layer(background, pixel.position, params.layer_scale);
     if (share == 0.0 && before.a == 0.0) return color;
-    vec3 sharp = depth_of_field_light(color);
+    vec3 sharp = postfx_light(color);
     vec3 blurred = sharp;
     if (before.a > 0.0) blurred = before.rgb / before.a; // deep inside a foreground: nothing behind it is known
     if (behind.a > 0.0) blurred = behind.rgb / behind.a;

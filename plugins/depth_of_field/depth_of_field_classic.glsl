@@ -1,5 +1,5 @@
 #include "depth_of_field_circle.glsl"
-#include "depth_of_field_light.glsl"
+#include <postfx/numeric.glsl>
 
 // The naive blur: the mean of a square around the pixel, of a whole number of pixels that its own circle gives.
 // Sharp surfaces leak into the blur beside them, near ones keep sharp edges, and the steps of the radius show.
@@ -10,7 +10,7 @@ vec4 depth_of_field_classic(Pixel pixel, DepthOfFieldClassicParams params, sampl
     for (int y = -radius; y <= radius; ++y) {
         for (int x = -radius; x <= radius; ++x) {
             ivec2 at = clamp(pixel.index + ivec2(x, y), ivec2(0), last);
-            sum += depth_of_field_light(texelFetch(source, at, 0).rgb);
+            sum += postfx_light(texelFetch(source, at, 0).rgb);
         }
     }
     float side = float(2 * radius + 1);

@@ -1,6 +1,6 @@
 #include "depth_of_field_circle.glsl"
-#include "depth_of_field_light.glsl"
 #include "depth_of_field_share.glsl"
+#include <postfx/numeric.glsl>
 
 // Radius [texels] of the disc that is gathered for a mean circle [px]. The block, the joined lattice and the
 // interpolation spread light too; theirs is taken off, so that the whole has the circle's variance.
@@ -31,7 +31,7 @@ void depth_of_field_layers(Pixel pixel, DepthOfFieldLayersParams params, sampler
     for (int y = 0; y < DEPTH_OF_FIELD_BLOCK; ++y) {
         for (int x = 0; x < DEPTH_OF_FIELD_BLOCK; ++x) {
             ivec2 at = min(DEPTH_OF_FIELD_BLOCK * pixel.index + ivec2(x, y), last);
-            vec4 light = vec4(depth_of_field_light(texelFetch(source, at, 0).rgb), 1.0);
+            vec4 light = vec4(postfx_light(texelFetch(source, at, 0).rgb), 1.0);
             float circle = depth_of_field_circle(texelFetch(depth, at, 0).r, params.lens);
             float share = depth_of_field_share(circle);
             float far = circle > 0.0 ? share : 0.0;

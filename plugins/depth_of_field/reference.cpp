@@ -22,11 +22,11 @@ struct Layers {
     int far_lattice(double radius) const { return radius < thin_from ? 1 : radius < thinnest_from ? 2 : 4; }
 };
 
-Layers layers_of(double quality) {
-    if (quality == 0) return {4, 2, 2, 9, 9, 1, 8};
-    if (quality == 1) return {7, 2, 2, 4, 5, 4, 16};
-    if (quality == 2) return {7, 2, 2, 9, 9, 1, 16};
-    if (quality == 3) return {14, 1, 1, 0, 7, 4, 16};
+Layers layers_of(const std::string& level) {
+    if (level == "low") return {4, 2, 2, 9, 9, 1, 8};
+    if (level == "medium") return {7, 2, 2, 4, 5, 4, 16};
+    if (level == "high") return {7, 2, 2, 9, 9, 1, 16};
+    if (level == "ultra") return {14, 1, 1, 0, 7, 4, 16};
     return {40, 1, 1, 99, 99, 1, 48};
 }
 
@@ -51,11 +51,11 @@ double disc(double radius, double distance) {
 class Model {
 public:
     explicit Model(const ReferenceInput& input)
-        : input_(input), lens_(input), layers_(layers_of(input.value("quality"))), axial_(lens_.axial()),
+        : input_(input), lens_(input), layers_(layers_of(input.level)), axial_(lens_.axial()),
           block_(block_of(input.color.height)), width_((input.color.width + block_ - 1) / block_),
           height_((input.color.height + block_ - 1) / block_) {
         // A level has no lattice for discs that its pictures can't have.
-        const bool small_discs = input.value("quality") == 3 && radius_in_texels(lens_.limit()) <= 7;
+        const bool small_discs = input.level == "ultra" && radius_in_texels(lens_.limit()) <= 7;
         if (small_discs || radius_in_texels(lens_.behind_limit()) < layers_.thin_from)
             layers_.thin_from = layers_.thinnest_from = 99;
         if (small_discs) layers_.near_lattice = 1;
@@ -431,6 +431,6 @@ Image64 circles(const ReferenceInput& input) {
 Image64 postfx::testing::reference(const ReferenceInput& input) {
     if (input.value("view") == 1) return circles(input);
     if (!Lens(input).blurs()) return input.color;
-    if (input.value("quality") == 5) return squares(input);
+    if (input.level == "classic") return squares(input);
     return Model(input).picture();
 }

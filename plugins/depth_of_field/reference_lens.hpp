@@ -31,9 +31,7 @@ inline Color color_at(const Image64& image, int x, int y) {
     Color color{};
     for (int c = 0; c < 3; ++c) {
         const double value = image.at(x, y, c);
-        color[static_cast<std::size_t>(c)] = std::isnan(value)   ? 0
-                                             : std::isinf(value) ? std::copysign(65504, value)
-                                                                 : value;
+        color[static_cast<std::size_t>(c)] = std::isnan(value) ? 0 : std::clamp(value, -65504.0, 65504.0);
     }
     return color;
 }

@@ -102,7 +102,7 @@ TEST_CASE("the picture is the reference's for an orthographic camera") {
                                {"f_number", 0.5},
                                {"max_circle_of_confusion", 0.1},
                                {"axial_aberration", 0.0002},
-                               {"quality", level}};
+                               {"quality", level_names[level]}};
         CHECK(against_reference(input, values).absolute <= rounding);
     }
 }

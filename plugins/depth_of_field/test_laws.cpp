@@ -132,7 +132,7 @@ TEST_CASE("constant light stays constant whatever the depth") {
                                            {"f_number", 1},
                                            {"max_circle_of_confusion", 0.1},
                                            {"axial_aberration", axial},
-                                           {"quality", level}};
+                                           {"quality", level_names[level]}};
                     const Worst worst = worst_difference(run_effect("depth_of_field", input, values),
                                                          convert<double>(input.color));
                     INFO(level_names[level] << ", axial " << axial);
@@ -256,5 +256,25 @@ TEST_CASE("axial aberration gives each colour its own circle, and none at 0") {
                 CHECK(4 * std::sqrt(found.variance) == Approx(diameter).margin(1.1)); // one place in a block
             }
         }
+    }
+}
+
+TEST_CASE("a shifted lens has the same circles of confusion, and the part of a larger picture") {
+    // The sensor stays parallel to the plane in focus: the circle depends on the distance along the view axis alone.
+    constexpr Part part = {.x = size / 2, .y = 0, .width = size, .height = size};
+    const Input whole = scene(noise(2 * size, size, 0, 4), layered);
+    const Input input = part_of(whole, part);
+    Input centred = input;
+    centred.camera.principal_point = {0, 0};
+    for (int level : all_levels) {
+        const Image wide = part_of(run_effect("depth_of_field", whole, small_lens(level)), part);
+        const Image result = run_effect("depth_of_field", input, small_lens(level));
+        CHECK(same_bits(result, run_effect("depth_of_field", centred, small_lens(level))));
+        // Foreground reaches 6 px from its own place, and what it covers is filled from as far again.
+        constexpr int border = 16;
+        const Part inside = {border, 0, size - 2 * border, size};
+        INFO(level_names[level]);
+        CHECK(worst_difference(part_of(result, inside), doubled_precision(part_of(wide, inside))).absolute
+              <= 4 * rounding);
     }
 }

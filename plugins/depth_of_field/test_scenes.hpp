@@ -35,7 +35,7 @@ inline Values lens(double diameter, int height, const Camera& camera, int level 
             {"focal_length", std::min(1000 * aperture, 1000.0)},
             {"f_number", 1},
             {"max_circle_of_confusion", 0.1},
-            {"quality", static_cast<double>(level)}};
+            {"quality", level_names[level]}};
 }
 /// Where that lens has a circle of `diameter` times that at infinity (below 0: before the focus plane).
 inline double distance_with(double relative_diameter) {

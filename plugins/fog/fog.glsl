@@ -7,7 +7,7 @@ vec3 fog(vec3 color, Pixel pixel, FogParams params, sampler2D depth) {
     float raw = texelFetch(depth, pixel.index, 0).r;
     FogPath path = fog_path(pixel, raw, params.start, params.base_height);
     float density = fog_density(path.height + min(path.rise, 0.0), params.density, params.height_falloff);
-    float thickness = density * path.length * fog_mean_exp(params.height_falloff * abs(path.rise));
+    float thickness = density * path.distance * fog_mean_exp(params.height_falloff * abs(path.rise));
     if (FOG_SKY == 0 && postfx_is_sky(raw)) thickness = 0.0;
     return fog_blend(color, thickness, params.color, params.max_opacity);
 }

@@ -5,7 +5,7 @@
 struct FogPath {
     float height; // of its beginning above the base height
     float rise;   // from there to its end
-    float length;
+    float distance;
 };
 
 // Metres along the view axis from where rays begin (the eye; the near plane of parallel rays) to at most 1e20, where
@@ -26,18 +26,18 @@ FogPath fog_path(Pixel pixel, float depth, float start, float base_height) {
     if (FOG_PARALLEL != 0) {
         path.height += dot(up, vec3(plane, -u_frame.near_plane));
         path.rise = -up.z * view_distance;
-        path.length = view_distance;
+        path.distance = view_distance;
     } else {
         vec3 ray = vec3(plane, -1.0);
         path.rise = dot(up, ray) * view_distance;
-        path.length = length(ray) * view_distance;
+        path.distance = length(ray) * view_distance;
     }
     if (FOG_HAS_START != 0) {
-        float clear = min(start, path.length);
-        float share = path.length > 0.0 ? clear / path.length : 0.0;
+        float clear = min(start, path.distance);
+        float share = path.distance > 0.0 ? clear / path.distance : 0.0;
         path.height += share * path.rise;
         path.rise -= share * path.rise;
-        path.length -= clear;
+        path.distance -= clear;
     }
     return path;
 }

@@ -33,8 +33,9 @@ Ray ray_of(const ReferenceInput& input, int x, int y) {
     const Vector from = camera.orthographic ? Vector{across, up, -begin} : Vector{0, 0, 0};
     const Vector to = camera.orthographic ? Vector{across, up, -begin - 1} : Vector{across, up, -1};
     const double per_view_distance = std::hypot(to[0] - from[0], to[1] - from[1], to[2] - from[2]);
-    const double height = world_height(camera, from);
-    return {height, (world_height(camera, to) - height) / per_view_distance, (z - begin) * per_view_distance};
+    const double begin_height = world_height(camera, from);
+    return {begin_height, (world_height(camera, to) - begin_height) / per_view_distance,
+            (z - begin) * per_view_distance};
 }
 
 double height_fog_thickness(const ReferenceInput& input, const Ray& ray) {
@@ -51,7 +52,7 @@ double height_fog_thickness(const ReferenceInput& input, const Ray& ray) {
 } // namespace
 
 Image64 reference(const ReferenceInput& input) {
-    const bool classic = input.value("quality") == 0;
+    const bool classic = input.level == "classic";
     const Image64& depth = input.attachments.at("depth");
     Image64 result(input.color.width, input.color.height, 3);
     for (int y = 0; y < result.height; ++y) {

@@ -18,7 +18,7 @@ namespace {
 constexpr double ulp = 0x1p-23; // of 1
 constexpr float infinity = std::numeric_limits<float>::infinity();
 constexpr float not_a_number = std::numeric_limits<float>::quiet_NaN();
-constexpr double classic = 0, medium = 1; // values of quality
+constexpr const char *classic = "classic", *medium = "medium"; // levels
 
 /// At that height, looking up by `pitch` degrees. The matrix is rounded to float32, as the shader gets it, so
 /// that its rounding is no error of the effect.
@@ -218,7 +218,7 @@ TEST_CASE("seen from the other end, the fog is the same") {
 TEST_CASE("turning the camera does not change the fog before a point, but for the axis distance") {
     constexpr int count = 33;
     const double elevation = 4, distance = 80;
-    for (double level : {medium, classic}) {
+    for (const char* level : {medium, classic}) {
         double least = 1, most = 0;
         for (int y = 0; y < count; y += 4) {
             const double angle = std::atan((2 * y + 1.0 - count) / count) * 180 / std::numbers::pi;
@@ -273,7 +273,7 @@ TEST_CASE("the sky is what infinitely far points look like") {
     const Camera camera = looking(3, 20);
     CHECK(transmittance_of(camera, infinity, {{"height_falloff", 0}, {"density", 1e-9}}) == 0);
     CHECK(transmittance_of(camera, infinity, {{"height_falloff", 0}, {"quality", classic}}) == 0);
-    for (double level : {classic, medium}) {
+    for (const char* level : {classic, medium}) {
         CHECK(transmittance_of(camera, infinity, {{"sky", 0}, {"quality", level}}) == 1);
         CHECK(transmittance_of(camera, 1e9, {{"height_falloff", 0}, {"sky", 0}, {"quality", level}}) == 0);
     }
@@ -305,7 +305,7 @@ TEST_CASE("no density, no opacity or no depth change no bit, and neither does no
     input.color.at(1, 0, 1) = infinity;
     const std::uint32_t payload = 0x7fc12345u;
     std::memcpy(&input.color.at(2, 0, 2), &payload, sizeof(payload));
-    for (double level : {classic, medium}) {
+    for (const char* level : {classic, medium}) {
         for (Values values : {Values{{"density", 0}}, Values{{"max_opacity", 0}}}) {
             values["quality"] = level;
             CHECK(same_bits(run_effect("fog", input, values), input.color));
@@ -329,7 +329,7 @@ TEST_CASE("hostile pixels stay where they are, and opaque fog hides what is infi
         input.color.at(i, 8, 0) = hostile[i];
         input.color.at(20 + i, 8, 0) = hostile[i];
     }
-    for (double level : {classic, medium}) {
+    for (const char* level : {classic, medium}) {
         const Image result = run_effect(
             "fog", input, {{"quality", level}, {"height_falloff", 0}, {"density", 1}, {"color.0", 0.5}});
         int non_finite = 0;
@@ -362,12 +362,54 @@ TEST_CASE("finite light stays finite whatever depth, camera and values") {
                 looking(at, up), looking_in_parallel(at, up),
                 placed(Camera::perspective(179, 1e-3, 1e7, Camera::DepthKind::standard), at, 0)};
             input.camera = cameras[run % 3];
-            const Values values = {{"quality", run / 3 % 2}, {"density", any(1)}, {"height_falloff", any(10)},
-                                   {"base_height", -at},     {"start", any(1e6)}, {"max_opacity", any(1)},
-                                   {"color.0", any(1000)},   {"sky", run % 2}};
+            const Values values = {{"quality", run / 3 % 2 == 0 ? classic : medium},
+                                   {"density", any(1)},
+                                   {"height_falloff", any(10)},
+                                   {"base_height", -at},
+                                   {"start", any(1e6)},
+                                   {"max_opacity", any(1)},
+                                   {"color.0", any(1000)},
+                                   {"sky", run % 2}};
             const Image result = run_effect("fog", input, values, Format::rgba16f);
             CHECK(std::all_of(result.values.begin(), result.values.end(),
                               [](float value) { return std::isfinite(value); }));
         }
     }
+}
+
+TEST_CASE("with a shifted lens fog is that of the part of a larger picture") {
+    constexpr int width = 96, height = 54;
+    const auto distance = [](int x, int y) { return y > 44 ? double(infinity) : 3 + 0.4 * x + 0.2 * y; };
+    for (const Camera& camera :
+         {looking(2, 10), placed(Camera::perspective(50, 0.1), 2, -20), looking_in_parallel(2, 20)}) {
+        const Input whole = white(width, height, camera, distance);
+        for (const Values& more : {Values{}, Values{{"start", 12}}, Values{{"quality", classic}}}) {
+            Values values = green({{"density", 0.02}, {"height_falloff", 0.3}});
+            values.insert(more.begin(), more.end());
+            const Image wide = run_effect("fog", whole, values);
+            for (const Part& part : {Part{48, 0, 48, 54}, Part{0, 27, 96, 27}, Part{5, 9, 31, 23}}) {
+                const Input input = part_of(whole, part);
+                const Image result = run_effect("fog", input, values);
+                // The bound of slanted rays, at a falloff of 0.3 and up to 70 m: 1e-6 + 0.3 * 107 * ulp = 5e-6 of a
+                // thickness, which moves the light by 0.4 of that at most; for either picture.
+                CHECK(worst_difference(result, convert<double>(part_of(three_channels(wide), part))).absolute
+                      <= 4e-6);
+                CHECK(worst_difference(result, reference(reference_input("fog", input, values))).absolute
+                      <= 4e-6);
+            }
+        }
+    }
+}
+
+TEST_CASE("the longest ray is the one to the corner that is farthest from the axis") {
+    // Nothing lies beyond 10 m along the view axis, but rays to the right are longer by sqrt(1 + 1 + 9).
+    Input input = white(9, 9, looking(0, 0), [](int, int) { return 10; });
+    input.camera.principal_point = {-2, 0};
+    const Values values = {{"start", 25}, {"density", 0.1}, {"sky", 0}};
+    const Image fogged = run_effect("fog", input, green(values));
+    CHECK(fogged.at(8, 8, 1) > 0.1f);
+    CHECK(fogged.at(0, 4, 1) == 0);
+    Values all = green(values);
+    all["skip"] = "nothing";
+    CHECK(same_bits(fogged, run_effect("fog", input, all)));
 }

@@ -32,8 +32,9 @@ constexpr postfx_level levels[] = {
                   "sine noise by how far a pixel is out of focus, the same in all light; wears out in time"),
     postfx::level("low", "one number per pixel: right in strength, but grains are pixels"),
     postfx::level("medium", "grains of the right size from 3 numbers per channel"),
-    postfx::level("high", "discs of two sizes on a lattice, seen through pixels: up to 14 numbers per channel"),
-    postfx::level("reference", "32 layers of discs at random places (Boolean model); slow"),
+    postfx::level("high",
+                  "discs of two sizes on a lattice, seen through pixels: up to 14 numbers per channel"),
+    postfx::level("reference", "up to 32 layers of discs at random places (Boolean model); slow"),
 };
 
 constexpr double pi = std::numbers::pi;
@@ -64,10 +65,27 @@ struct SeenDisc {
         area_of_square = inner < 0 ? pi * std::pow(reach, 4) / 6 : pi * (inner * inner + 2 * reach / 3 - 0.5);
     }
 };
-/// Of the levels from low on.
-constexpr const char* sources[] = {"grain_pixels.glsl", "grain.glsl", "grain_gaussian.glsl",
-                                   "grain_boolean.glsl"};
-constexpr int layers_of_discs = 32;
+/// Of the levels from low to high.
+constexpr const char* sources[] = {"grain_pixels.glsl", "grain.glsl", "grain_gaussian.glsl"};
+
+/// What mixes the reference's layers of discs: some are common to the channels, some a channel's own.
+struct Layers {
+    int common = 0, own = 0;
+    double common_weight = 0, own_weight = 0; ///< of each layer; all together sum to 1
+    double deviation = 0;                     ///< of the weighted mean, over that of one layer
+
+    /// As many as are needed for that deviation in mid-tones, where one layer has the variance `of_one` of u (1 - u);
+    /// more than 32 only make the noise more Gaussian than it is already. Two channels correlate by the common
+    /// layers' share of the variance, which is to be 1 - color: only then may all of them be of one kind.
+    Layers(double sigma, double of_one, double color) {
+        const int count = static_cast<int>(std::clamp(std::floor(of_one / (sigma * sigma)), 2.0, 32.0));
+        own = color == 0 ? 0 : color == 1 ? count : std::clamp(int(std::lround(color * count)), 1, count - 1);
+        common = count - own;
+        deviation = 1 / (std::sqrt((1 - color) * common) + std::sqrt(color * own));
+        common_weight = deviation * std::sqrt((1 - color) / std::max(common, 1));
+        own_weight = deviation * std::sqrt(color / std::max(own, 1));
+    }
+};
 
 /// A word for the hash, as int_value() can pass it on.
 int key_of(int seed) {
@@ -84,28 +102,39 @@ void declare_classic(const postfx::Request& in, postfx::Builder& out) {
         .value("inverse_focus_distance", 1 / in.camera().focus_distance);
 }
 
+/// sigma: the noise's deviation over sqrt(u (1 - u)).
+void declare_layers(const postfx::Request& in, postfx::Builder& out, const SeenDisc& disc, double sigma) {
+    const double square_share = disc.area_of_square / disc.area;
+    const Layers layers(sigma, std::exp2(square_share) - 1, in.number("color"));
+    out.compose("grain_boolean.glsl")
+        .int_value("key", key_of(in.integer("seed")))
+        .value("frequency", 0.5 / disc.reach)
+        .value("discs", 4 * disc.reach * disc.reach / disc.area)
+        .value("square_share", square_share)
+        .value("deviation", sigma / layers.deviation)
+        .int_value("common_layers", layers.common)
+        .int_value("own_layers", layers.own)
+        .value("common_weight", layers.common_weight)
+        .value("own_weight", layers.own_weight);
+}
+
 void plan(const postfx::Request& in, postfx::Builder& out) {
     if (in.number("amount") == 0 && out.identity("amount is 0")) return;
     if (in.level() == classic) return declare_classic(in, out);
     const double size = in.number("size") * in.height(); // pixels
     // A pixel that holds many grains averages them: deviation times sqrt(area) is constant (Selwyn's law).
     const double sigma = in.number("amount") * std::min(1.0, size);
+    const SeenDisc disc(size);
+    if (in.level() == reference) return declare_layers(in, out, disc, sigma);
     // A channel is own * its field + joint * the sum of the three: its variance, (own + joint)^2 + 2 joint^2,
     // is to be 1; two channels then correlate by 1 - own^2, which is to be 1 - color.
     const double own = std::sqrt(in.number("color"));
     const double joint = (std::sqrt(3 - 2 * own * own) - own) / 3;
-    const SeenDisc disc(size);
     postfx::PassDeclaration pass = out.compose(sources[in.level() - low]);
     pass.value("own", sigma * own).value("joint", sigma * joint).int_value("key", key_of(in.integer("seed")));
     if (in.level() == medium) pass.value("frequency", medium_edges / disc.diameter);
     if (in.level() == high)
         pass.value("frequency", 2 / disc.reach).value("radius_squared", disc.radius * disc.radius);
-    if (in.level() == reference) {
-        pass.value("frequency", 0.5 / disc.reach)
-            .value("discs", 4 * disc.reach * disc.reach / disc.area)
-            .value("square_share", disc.area_of_square / disc.area)
-            .constant("GRAIN_LAYERS", layers_of_discs);
-    }
 }
 
 /// u + n sqrt(u (1 - u)), its second part cut at the nearer end: at most twice as steep as u up to 1, as steep

@@ -83,6 +83,14 @@ struct SlopedDisc {
     double height(double distance) const { return std::clamp(reach - distance, 0.0, 1.0); }
 };
 
+/// The last one asked for is kept: its integrals take longer than a pixel.
+const SlopedDisc& seen_disc(double radius) {
+    static double known = -1;
+    static SlopedDisc disc(1);
+    if (known != radius) disc = SlopedDisc(known = radius);
+    return disc;
+}
+
 /// Corner (i, j) of the triangular lattice with edges of length `edge` stands at i * a + j * b, where a and b
 /// are the edges that lie symmetrically about the diagonal.
 Triple triangular_field(double x, double y, double edge, std::uint32_t key) {
@@ -126,11 +134,13 @@ Triple square_field(double x, double y, double edge, double radius, const Triple
     return result;
 }
 
-/// How many of a Poisson process's points a uniform number stands for.
+/// How many of a Poisson process's points a uniform number stands for: more than n where it is below the probability
+/// of that.
 int poisson(double number, double mean) {
     int count = 0;
-    for (double share = std::exp(-mean); number >= share && count < 96; share *= mean / ++count)
-        number -= share;
+    double share = std::exp(-mean);
+    for (double more = -std::expm1(-mean); number < more && count < 96; more -= share)
+        share *= mean / ++count;
     return count;
 }
 
@@ -152,17 +162,41 @@ double bare_share(double x, double y, double cell, const SlopedDisc& disc, doubl
     return bare;
 }
 
-double boolean_field(double x, double y, const SlopedDisc& disc, double light, std::uint32_t key) {
-    const double covered = std::clamp(light, 0.001, 0.999), cell = 2 * disc.reach;
-    const double density = -std::log1p(-covered) / disc.area; // per square pixel
-    const int layers = 32;
+/// The mean of `count` layers of discs.
+double mean_cover(double x, double y, const SlopedDisc& disc, double mean, std::uint32_t key, int count) {
+    const double cell = 2 * disc.reach;
     double sum = 0;
-    for (int layer = 0; layer < layers; ++layer) {
+    for (int layer = 0; layer < count; ++layer) {
         key = mixed(key + 2654435769u);
-        sum += 1 - bare_share(x / cell, y / cell, cell, disc, density * cell * cell, key);
+        sum += 1 - bare_share(x / cell, y / cell, cell, disc, mean, key);
     }
-    const double variance = std::pow(1 - covered, 2) * std::expm1(density * disc.area_of_square);
-    return (sum - layers * covered) / std::sqrt(layers * variance);
+    return count > 0 ? sum / count : 0;
+}
+
+/// Light mixed with the cover of layers that have its mean, some of them the channel's own. `sigma` is the deviation
+/// asked for, over sqrt(u (1 - u)).
+double boolean_light(double x, double y, const SlopedDisc& disc, double light, double sigma, double color,
+                     std::uint32_t key, std::uint32_t channel) {
+    if (!(light > 0 && light < 1)) return light;
+    const double square = disc.area_of_square / disc.area;
+    const auto variance = [&](double u) { return std::pow(1 - u, 2 - square) - std::pow(1 - u, 2); };
+    const double fitting = std::floor(4 * variance(0.5) / (sigma * sigma));
+    const int layers = static_cast<int>(std::clamp(fitting, 2.0, 32.0));
+    int own = static_cast<int>(std::lround(color * layers));
+    if (color > 0 && color < 1) own = std::clamp(own, 1, layers - 1);
+    // Of the variance, common layers have 1 - color, though their number is not quite that part of all.
+    double common_part = std::sqrt((1 - color) * (layers - own)), own_part = std::sqrt(color * own);
+    const double parts = common_part + own_part;
+    common_part /= parts;
+    own_part /= parts;
+
+    const double u = std::clamp(light, 1 / 8192.0, 0.999);
+    const double mean = -std::log1p(-u) / disc.area * std::pow(2 * disc.reach, 2); // in a cell
+    const double covered = common_part * mean_cover(x, y, disc, mean, key, layers - own)
+                           + own_part * mean_cover(x, y, disc, mean, mixed(key + channel + 1), own);
+    const double wanted = sigma * std::sqrt(u * (1 - u)), given = std::sqrt(variance(u)) / parts;
+    const double dimmed = std::min({1.0, light / u, (1 - light) / (1 - u)});
+    return light + dimmed * std::min(1.0, wanted / given) * (covered - u);
 }
 
 Triple field_at(const ReferenceInput& input, int level, int x, int y) {
@@ -173,16 +207,10 @@ Triple field_at(const ReferenceInput& input, int level, int x, int y) {
     // The square's 1 / 12 is that of a disc of diameter 2 / sqrt(3).
     if (level == medium)
         return triangular_field(px, py, 1.22 / 1.75 * std::hypot(2 * radius, 2 / std::sqrt(3.0)), key);
-    Triple light, result;
+    Triple light;
     for (std::size_t c = 0; c < 3; ++c)
         light[c] = input.color.at(x, y, static_cast<int>(c));
-    static double known = -1;
-    static SlopedDisc disc(1);
-    if (known != radius) disc = SlopedDisc(known = radius);
-    if (level == high) return square_field(px, py, disc.reach / 2, radius, light, key);
-    for (std::uint32_t c = 0; c < 3; ++c)
-        result[c] = boolean_field(px, py, disc, light[c], mixed(key + c + 1));
-    return result;
+    return square_field(px, py, seen_disc(radius).reach / 2, radius, light, key);
 }
 
 /// With a focus that is not known.
@@ -197,19 +225,27 @@ double sine_noise(const ReferenceInput& input, int x, int y) {
 
 Image64 reference(const ReferenceInput& input) {
     const int width = input.color.width, height = input.color.height;
-    const int level = static_cast<int>(input.value("quality"));
+    const int level = input.level_among({"classic", "low", "medium", "high", "reference"});
     const double amount = input.value("amount") * std::min(input.value("size") * height, 1.0);
     const double own = std::sqrt(input.value("color"));
     const double joint = (std::sqrt(3 - 2 * input.value("color")) - own) / 3;
     Image64 result(width, height, 3);
     for (int y = 0; y < height; ++y) {
         for (int x = 0; x < width; ++x) {
-            const Triple field = level == classic ? Triple{} : field_at(input, level, x, y);
+            const bool is_summed = level == low || level == medium || level == high;
+            const Triple field = is_summed ? field_at(input, level, x, y) : Triple{};
             const double all = field[0] + field[1] + field[2];
             for (int c = 0; c < 3; ++c) {
                 const double u = input.color.at(x, y, c);
                 if (level == classic) {
                     result.at(x, y, c) = u + sine_noise(input, x, y);
+                    continue;
+                }
+                if (level == boolean) {
+                    const SlopedDisc& disc = seen_disc(0.875 * input.value("size") * height);
+                    result.at(x, y, c) =
+                        boolean_light(x + 0.5, y + 0.5, disc, u, amount, input.value("color"), key_of(input),
+                                      static_cast<std::uint32_t>(c));
                     continue;
                 }
                 const double room = std::max(0.0, std::min(u, 1 - u));

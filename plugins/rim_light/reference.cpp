@@ -38,8 +38,8 @@ double fresnel(double cosine, double index) {
 }
 
 double share(const ReferenceInput& input, const Vector& normal, const Vector& eye) {
-    const double level = input.value("quality"), width = input.value("width");
-    if (level == 0) return std::clamp((width - dot(normal, eye)) / width, 0.0, 1.0);
+    const double width = input.value("width");
+    if (input.level == "classic") return std::clamp((width - dot(normal, eye)) / width, 0.0, 1.0);
     const double cosine = std::min(std::abs(dot(normal, eye)) / length(normal), 1.0);
     if (input.value("profile") == 0) return std::max(1 - cosine / width, 0.0);
     return fresnel(cosine, input.value("refractive_index"));

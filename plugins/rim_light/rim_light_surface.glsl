@@ -16,5 +16,5 @@ vec3 rim_light_to_eye(Pixel pixel) {
 
 // No light is lifted over the largest half float; where there is no share of it, the light keeps its bits.
 vec3 rim_light_add(vec3 color, float share, vec3 light) {
-    return share > 0.0 ? color + min(share * light, max(65504.0 - color, 0.0)) : color;
+    return share > 0.0 ? color + min(share * light, max(POSTFX_BRIGHTEST - color, 0.0)) : color;
 }

@@ -14,7 +14,6 @@ using postfx::testing::ReferenceInput;
 
 namespace {
 
-constexpr double classic = 5; ///< index of that level
 constexpr int slices = 64;
 
 using Vector = std::array<double, 3>;
@@ -181,7 +180,7 @@ double occlusion(const Scene& scene, int x, int y, double radius, double falloff
 /// Share of 80 pixels in a grid that are nearer by less than the radius.
 double classic_occlusion(const Scene& scene, int x, int y, int width, int height, double radius) {
     const std::optional<double> own = scene.distance(x, y);
-    if (!own) return 0;
+    if (!own || !scene.normal(x, y)) return 0;
     const int stride = 1 + height / 240;
     int nearer = 0;
     for (int i = 0; i < 81; ++i) {
@@ -204,7 +203,7 @@ Image64 postfx::testing::reference(const ReferenceInput& input) {
         for (int x = 0; x < result.width; ++x) {
             const double occluded =
                 input.value("strength")
-                * (input.value("quality") == classic
+                * (input.level == "classic"
                        ? classic_occlusion(scene, x, y, result.width, result.height, radius)
                        : occlusion(scene, x, y, radius, input.value("falloff")));
             for (int c = 0; c < 3; ++c) {

@@ -32,20 +32,21 @@ struct Gather {
     int block;        ///< one texel for every block x block pixels
     int slices;       ///< planes through the line of sight
     int steps;        ///< samples on either side of it, per slice
+    int closing;      ///< more of them where a surface leaves the radius
     bool interleaved; ///< 3x3 texels look along different slices, and are averaged by the denoiser
 };
 
 enum LevelIndex { low, medium, high, ultra, reference, classic };
 constexpr postfx_level levels[] = {
     postfx::level("low", "1 slice of 2 x 4 samples for every 3x3 pixels, denoised"),
-    postfx::level("medium", "2 slices of 2 x 4 samples for every 2x2 pixels, denoised"),
+    postfx::level("medium", "1 slice of 2 x 5 samples for every 2x2 pixels, denoised"),
     postfx::level("high", "2 slices of 2 x 6 samples for every pixel, denoised"),
     postfx::level("ultra", "4 slices of 2 x 12 samples for every pixel, denoised"),
     postfx::level("reference", "24 slices of 2 x 64 samples for every pixel; slow"),
     postfx::level("classic", "share of 80 pixels around that are nearer; darkens slopes"),
 };
 constexpr Gather gathers[] = {
-    {3, 1, 4, true}, {2, 1, 4, true}, {1, 2, 6, true}, {1, 4, 12, true}, {1, 24, 64, false}};
+    {3, 1, 4, 2, true}, {2, 1, 5, 3, true}, {1, 2, 6, 3, true}, {1, 4, 12, 4, true}, {1, 24, 64, 4, false}};
 
 /// Below this the sphere of influence [pixels] lies within a pixel's nearest neighbours.
 constexpr double smallest_radius = 1.3;
@@ -100,6 +101,7 @@ postfx::PlanImage declare_gather(const postfx::Request& in, postfx::Builder& out
                                            .constant("SSAO_BLOCK", gather.block)
                                            .constant("SSAO_SLICES", gather.slices)
                                            .constant("SSAO_STEPS", gather.steps)
+                                           .constant("SSAO_CLOSING", gather.closing)
                                            .constant("SSAO_INTERLEAVED", gather.interleaved ? 1 : 0)
                                            .format("rg32f")
                                            .sized(width, height)
@@ -128,23 +130,16 @@ void declare_passes(const postfx::Request& in, postfx::Builder& out) {
     const postfx::PlanImage depth = out.attachment("depth");
     const postfx::PlanImage occlusion =
         is_classic ? declare_classic(in, out) : declare_gather(in, out, gathers[in.level()]);
-    if (in.choice("view") == visibility) {
-        out.compose("ssao_view.glsl")
-            .reads("depth", depth, "nearest")
-            .reads("occlusion", occlusion, "nearest")
-            .constant("SSAO_BLOCK", block);
-    } else if (in.has("ambient")) {
-        out.compose("ssao.glsl")
-            .reads("depth", depth, "nearest")
-            .reads("occlusion", occlusion, "nearest")
-            .reads("ambient", out.attachment("ambient"), "nearest")
-            .constant("SSAO_BLOCK", block);
-    } else {
-        out.compose("ssao_multiply.glsl")
-            .reads("depth", depth, "nearest")
-            .reads("occlusion", occlusion, "nearest")
-            .constant("SSAO_BLOCK", block);
-    }
+    const bool shows_picture = in.choice("view") == picture, has_ambient = in.has("ambient");
+    const bool checks_normal = in.has("normal") && (is_classic || block > 1);
+    const char* source = !shows_picture ? "ssao_view.glsl" : has_ambient ? "ssao.glsl" : "ssao_multiply.glsl";
+    postfx::PassDeclaration pass = out.compose(source);
+    pass.reads("depth", depth, "nearest")
+        .reads("occlusion", occlusion, "nearest")
+        .reads("normal", checks_normal ? out.attachment("normal") : depth, "nearest")
+        .constant("SSAO_BLOCK", block)
+        .constant("SSAO_CHECKS_NORMAL", checks_normal ? 1 : 0);
+    if (shows_picture && has_ambient) pass.reads("ambient", out.attachment("ambient"), "nearest");
 }
 
 void plan(const postfx::Request& in, postfx::Builder& out) {

@@ -4,28 +4,53 @@
 // Ground-truth ambient occlusion (Jimenez et al. 2016): planes through the line of sight cut the surface, and on
 // either side of it everything below the highest sample counts as solid. README.md has the model.
 
-// Highest elevation over the tangent plane that the surface has on one side of a slice, as 1 - cos, at most 1; 0 if
-// nothing rises above it. toward: step on the screen [texels]; reach: how many; over: the normal divided by its
-// length within the slice; slack [m]: what the depth's own rounding can lift.
-float ssao_highest(vec2 from, vec2 toward, float reach, float jitter, vec3 place, vec3 over, float slack,
-                   float radius, float fade, sampler2D distances) {
-    vec2 last = vec2(textureSize(distances, 0) - 1);
-    vec2 plane_step = ssao_plane_step(), plane_start = ssao_plane_start();
-    float highest = 0.0;
+// What the samples of one slice share.
+struct SsaoSlice {
+    vec3 place;   // of the point [m]
+    vec3 over;    // the normal divided by its length within the slice
+    float slack;  // what the depth's own rounding can lift [m]
+    float radius; // [m]
+    float fade;   // 1 / the part of it over which samples fade out
+};
+
+// Elevation over the tangent plane of one texel, as 1 - cos times its weight; 0 if it does not rise above it, and -1 if
+// it does, but beyond the radius.
+float ssao_lift(vec2 texel, SsaoSlice slice, sampler2D distances) {
+    texel = clamp(floor(texel + 0.5), vec2(0.0), vec2(textureSize(distances, 0) - 1));
+    float z = texelFetch(distances, ivec2(texel), 0).r;
+    vec3 to_sample = ssao_place(texel * ssao_plane_step() + ssao_plane_start(), z) - slice.place;
+    // The texel may lie beside the slice; measured from the tangent plane, a plane's samples are never above it.
+    float height = dot(to_sample, slice.over) - slice.slack;
+    float squared = dot(to_sample, to_sample);
+    float inverse = inversesqrt(max(squared, 1e-36));
+    float inside = slice.radius - squared * inverse;
+    float lift = 1.0 - sqrt(max(squared - height * height, 0.0)) * inverse;
+    return height > 0.0 ? (inside > 0.0 ? lift * min(inside * slice.fade, 1.0) : -1.0) : 0.0;
+}
+
+// Highest elevation that the surface has on one side of a slice, as 1 - cos, at most 1; 0 if nothing rises above the
+// tangent plane. toward: step on the screen [texels]; reach: how many. A surface that comes towards the eye leaves the
+// radius where it is highest, within few texels: there the last samples close in.
+float ssao_highest(vec2 from, vec2 toward, float reach, float jitter, SsaoSlice slice, sampler2D distances) {
+    float highest = 0.0, before = 0.0, inside = 0.0, beyond = 0.0; // texels away
     for (int i = 0; i < SSAO_STEPS; ++i) {
         float t = (float(i) + jitter) / float(SSAO_STEPS);
         // Few samples stand closer together near the middle, where what they see fills a larger angle.
         float away = mix(1.0, max(reach, 1.0), SSAO_INTERLEAVED == 1 ? t * t : t);
-        vec2 texel = clamp(floor(from + away * toward + 0.5), vec2(0.0), last);
-        float z = texelFetch(distances, ivec2(texel), 0).r;
-        vec3 to_sample = ssao_place(texel * plane_step + plane_start, z) - place;
-        // The texel may lie beside the slice; measured from the tangent plane, a plane's samples are never above it.
-        float height = dot(to_sample, over) - slack;
-        float squared = dot(to_sample, to_sample);
-        float inverse = inversesqrt(max(squared, 1e-36));
-        float weight = clamp((radius - squared * inverse) * fade, 0.0, 1.0);
-        float lift = 1.0 - sqrt(max(squared - height * height, 0.0)) * inverse;
-        highest = max(highest, height > 0.0 ? lift * weight : 0.0);
+        float lift = ssao_lift(from + away * toward, slice, distances);
+        if (lift < 0.0 && beyond == 0.0) {
+            inside = before;
+            beyond = away;
+        }
+        before = away;
+        highest = max(highest, lift);
+    }
+    for (int i = 0; i < (beyond > 0.0 ? SSAO_CLOSING : 0); ++i) {
+        float away = 0.5 * (inside + beyond);
+        float lift = ssao_lift(from + away * toward, slice, distances);
+        inside = lift < 0.0 ? inside : away;
+        beyond = lift < 0.0 ? away : beyond;
+        highest = max(highest, lift);
     }
     return highest;
 }
@@ -70,11 +95,12 @@ vec2 ssao_phase(ivec2 index) {
     return (vec2(3 * a + b, 3 * b + a) + 0.5) / 9.0;
 }
 
-// Occlusion of the ambient light, not yet held to 0..1; metres along the view axis.
+// Occlusion of the ambient light, not yet held to 0..1, or -1 where it is not known; metres along the view axis.
 vec4 ssao_gather(Pixel pixel, SsaoGatherParams params, sampler2D distances, sampler2D normals) {
     float z = texelFetch(distances, pixel.index, 0).r;
     vec3 normal = texelFetch(normals, pixel.index, 0).xyz;
-    if (z == SSAO_NOTHING || normal == vec3(0.0)) return vec4(0.0, z, 0.0, 0.0);
+    if (z == SSAO_NOTHING) return vec4(0.0, z, 0.0, 0.0);
+    if (normal == vec3(0.0)) return vec4(-1.0, z, 0.0, 0.0);
 
     vec2 from = vec2(pixel.index), last = vec2(textureSize(distances, 0) - 1);
     vec2 plane_step = ssao_plane_step();
@@ -102,12 +128,9 @@ vec4 ssao_gather(Pixel pixel, SsaoGatherParams params, sampler2D distances, samp
         float cosine = to_eye * in_slice, sine = to_side * in_slice;
         vec2 reach = min(ssao_sphere_reach(plane, toward * plane_step, params.radius / z, params.radius),
                          vec2(ssao_border_reach(from, toward, last), ssao_border_reach(from, -toward, last)));
-        vec3 over = normal * in_slice;
-        float slack = rounding * cosine;
-        float ahead =
-            ssao_highest(from, toward, reach.x, phase.y, place, over, slack, params.radius, fade, distances);
-        float behind =
-            ssao_highest(from, -toward, reach.y, phase.y, place, over, slack, params.radius, fade, distances);
+        SsaoSlice slice = SsaoSlice(place, normal * in_slice, rounding * cosine, params.radius, fade);
+        float ahead = ssao_highest(from, toward, reach.x, phase.y, slice, distances);
+        float behind = ssao_highest(from, -toward, reach.y, phase.y, slice, distances);
         lost += ssao_lost(ahead, to_eye, to_side, cosine, sine) + ssao_lost(behind, to_eye, -to_side, cosine, -sine);
     }
     return vec4(lost / float(SSAO_SLICES), z, 0.0, 0.0);

@@ -1,7 +1,10 @@
 #include "ssao_distance.glsl"
+#include "ssao_normal.glsl"
 
-// A pixel's occlusion, from the texels around it that are of its own surface.
-float ssao_occlusion(Pixel pixel, float radius, sampler2D depth, sampler2D occlusion) {
+// A pixel's occlusion, from the texels around it that are of its own surface. Where the texels don't know each pixel's
+// normal (SSAO_CHECKS_NORMAL), it is looked at here: an unusable one leaves its pixel open.
+float ssao_occlusion(Pixel pixel, float radius, sampler2D depth, sampler2D occlusion, sampler2D normal) {
+    if (SSAO_CHECKS_NORMAL == 1 && ssao_unit_normal(texelFetch(normal, pixel.index, 0).xyz) == vec3(0.0)) return 0.0;
     if (SSAO_BLOCK == 1) return clamp(texelFetch(occlusion, pixel.index, 0).r, 0.0, 1.0);
     float z = ssao_distance(texelFetch(depth, pixel.index, 0).r);
     if (z == SSAO_NOTHING) return 0.0;
@@ -12,7 +15,9 @@ float ssao_occlusion(Pixel pixel, float radius, sampler2D depth, sampler2D occlu
     vec4 part = vec2(1.0 - fraction.x, fraction.x).xyyx * vec2(fraction.y, 1.0 - fraction.y).xxyy;
     // Never 0: a surface that no texel shows takes what there is.
     vec4 weight = part * max(1.0 - abs(z_texels - z) * (4.0 / radius), 1e-4);
-    return dot(weight, occluded) / dot(weight, vec4(1.0));
+    weight = mix(weight, vec4(0.0), lessThan(occluded, vec4(0.0))); // not known there
+    float sum = dot(weight, vec4(1.0));
+    return sum > 0.0 ? dot(weight, occluded) / sum : 0.0;
 }
 
 // `color` without the occluded part of `ambient`, which is a share of it; never driven below 0. An ambient share that

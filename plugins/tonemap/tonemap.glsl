@@ -1,7 +1,5 @@
 #include <postfx/color.glsl>
-
-// Every operator has long reached white here, and its square is far from float's limit.
-const float TONEMAP_BRIGHTEST = 65504.0;
+#include <postfx/numeric.glsl>
 
 // Fit of the ACES reference rendering and sRGB output transforms (S. Hill 2016, "BakingLab", ACES.hlsl, MIT), with
 // the exposure that puts grey 0.18 near 0.21. The fit's constant -0.000090537 is left out: it would make everything
@@ -39,9 +37,10 @@ vec3 tonemap_hable(vec3 light) {
 }
 
 // No display shows negative light, and what is not a number is black. As integers, both lie above all that is not
-// negative: one comparison finds them, without trusting comparisons with NaN.
+// negative: one comparison finds them, without trusting comparisons with NaN. Every operator has long reached white at
+// the brightest light, and its square is far from float's limit.
 float tonemap_light(float x) {
-    return floatBitsToUint(x) > 0x7f800000u ? 0.0 : min(x, TONEMAP_BRIGHTEST);
+    return floatBitsToUint(x) > 0x7f800000u ? 0.0 : min(x, POSTFX_BRIGHTEST);
 }
 
 vec3 tonemap(vec3 color, Pixel pixel, TonemapParams params) {

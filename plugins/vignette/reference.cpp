@@ -10,7 +10,8 @@ namespace {
 double natural(double x, double y, const ReferenceInput& input) {
     // The sensor stands 1 away from the lens; x and y are in half picture heights.
     const double aspect = double(input.color.width) / input.color.height;
-    const double right = x - input.camera.principal_point[0] * aspect, up = y - input.camera.principal_point[1];
+    const double right = x - input.camera.principal_point[0] * aspect,
+                 up = y - input.camera.principal_point[1];
     const double angle = std::atan(std::hypot(right, up) * input.camera.tan_half_fov());
     return std::pow(std::cos(angle), 4);
 }
@@ -39,7 +40,7 @@ Image64 reference(const ReferenceInput& input) {
     for (int y = 0; y < height; ++y) {
         for (int x = 0; x < width; ++x) {
             const double across = (2 * x + 1.0 - width) / height, up = (2 * y + 1.0 - height) / height;
-            const double shape = input.value("quality") == 0 ? classic(across, up, input)
+            const double shape = input.level == "classic"    ? classic(across, up, input)
                                  : input.value("model") == 0 ? natural(across, up, input)
                                                              : artistic(across, up, input);
             const double gain = 1 - strength * (1 - shape);

@@ -16,7 +16,7 @@ constexpr double ulp = 0x1p-23; // of 1
 constexpr float infinity = std::numeric_limits<float>::infinity();
 const Values natural = {{"model", 0}, {"strength", 1}};
 const Values artistic = {{"model", 1}, {"strength", 1}};
-const Values classic = {{"quality", 0}, {"model", 1}, {"strength", 1}};
+const Values classic = {{"quality", "classic"}, {"model", 1}, {"strength", 1}};
 
 Image gains(int width, int height, const Values& values) {
     return run_effect("vignette", {.color = constant(width, height, {1, 1, 1})}, values);
@@ -28,9 +28,9 @@ Image gains(int width, int height, const Values& values) {
 double gain_tolerance(const Values& values) {
     if (values.contains("quality")) return 16 * ulp;
     const auto softness = values.find("softness");
-    return values.at("model") == 0
+    return values.at("model").number == 0
                ? 4 * ulp
-               : (4 + 4 * 1.5 / (softness == values.end() ? 0.9 : softness->second)) * ulp;
+               : (4 + 4 * 1.5 / (softness == values.end() ? 0.9 : softness->second.number)) * ulp;
 }
 
 } // namespace
@@ -41,7 +41,7 @@ TEST_CASE("the picture is the float64 reference's") {
                             {{"model", 1}},
                             artistic,
                             classic,
-                            {{"quality", 0}, {"strength", 0.3}},
+                            {{"quality", "classic"}, {"strength", 0.3}},
                             {{"model", 1}, {"strength", 1}, {"radius", 0}, {"softness", 0.01}},
                             {{"model", 1}, {"strength", 0.7}, {"roundness", 0}},
                             {{"model", 1}, {"strength", 0.7}, {"roundness", 0.4}, {"radius", 2}}};
@@ -201,5 +201,27 @@ TEST_CASE("hostile pixels stay where they are, and no light times infinity is bl
         CHECK(non_finite == (values == natural ? 4 : 1));
         CHECK(result.at(16, 16, 0) == infinity);
         CHECK(result.at(32, 0, 0) == (values == natural ? infinity : 0.0f));
+    }
+}
+
+TEST_CASE("with a shifted lens the gain is that of the part of a larger picture") {
+    Input whole{.color = noise(192, 108, 0, 1), .camera = Camera::perspective(70, 0.1)};
+    const Image wide = run_effect("vignette", whole, natural);
+    for (const Part& part : {Part{96, 0, 96, 108}, Part{0, 54, 192, 54}, Part{7, 11, 31, 23}}) {
+        const Input input = part_of(whole, part);
+        const Image result = run_effect("vignette", input, natural);
+        // Twice the gain's own rounding. Where the axis is, is rounded twice to float32, by up to 2^-23 of 4.9 half
+        // heights; the gain changes by at most 1.1 for each half height's tangent of 0.7.
+        const double margin = 8 * ulp + 4.9 * 0.7 * 1.1 * ulp;
+        CHECK(worst_difference(result, convert<double>(part_of(three_channels(wide), part))).absolute
+              <= margin);
+        CHECK(worst_difference(result, reference(reference_input("vignette", input, natural))).absolute
+              <= margin);
+        Input centred = input;
+        centred.camera.principal_point = {0, 0};
+        CHECK_FALSE(same_bits(result, run_effect("vignette", centred, natural)));
+        // Shapes of the picture, not of a lens, stay in its middle.
+        for (const Values& values : {artistic, classic})
+            CHECK(same_bits(run_effect("vignette", input, values), run_effect("vignette", centred, values)));
     }
 }

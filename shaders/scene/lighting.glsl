@@ -10,10 +10,10 @@ float scene_shadow(int layer, vec3 normal, vec3 to_light) {
     // width times sin(t), and the filter is half as wide again across its diagonal.
     float cosine = clamp(dot(normal, to_light), 0.0, 1.0);
     float softness = u_view.shadow_texel[layer].y;
-    mat4 world_to_shadow = u_view.world_to_shadow[layer];
-    float texel_width = u_view.shadow_texel[layer].x * (world_to_shadow * vec4(v_position, 1.0)).w;
-    vec3 lifted = v_position + normal * texel_width * (0.3 + 1.5 * (softness + 1.0) * sqrt(1.0 - cosine * cosine));
-    vec4 clip = world_to_shadow * vec4(lifted, 1.0);
+    mat4 offset_to_shadow = u_view.offset_to_shadow[layer];
+    float texel_width = u_view.shadow_texel[layer].x * (offset_to_shadow * vec4(v_offset, 1.0)).w;
+    vec3 lifted = v_offset + normal * texel_width * (0.3 + 1.5 * (softness + 1.0) * sqrt(1.0 - cosine * cosine));
+    vec4 clip = offset_to_shadow * vec4(lifted, 1.0);
     vec3 place = clip.xyz / clip.w;
     place.xy = place.xy * 0.5 + 0.5;
     float texel = softness / float(textureSize(u_shadows, 0).x);
@@ -40,7 +40,13 @@ vec3 scene_reflect(vec3 color, Surface surface, vec3 to_light, vec3 to_eye) {
 }
 
 float scene_attenuation(vec3 factors, float distance) {
-    return 1.0 / max(dot(factors, vec3(1.0, distance, distance * distance)), 1e-4);
+    return 1.0 / max(dot(factors, vec3(1.0, distance, distance * distance)), 1e-30); // against 0 alone
+}
+
+// A light's end, as KHR_lights_punctual has it: 1 nearby, 0 from `range` on.
+float scene_range(float range, float distance) {
+    float share = distance / range;
+    return clamp(1.0 - share * share * share * share, 0.0, 1.0);
 }
 
 // 1 inside of the inner angle, 0 outside of the outer one.

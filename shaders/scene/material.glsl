@@ -1,10 +1,14 @@
-// What a material is made of, and what is known of a surface before light falls on it.
+// What a material is made of, and what is known of a surface before light falls on it. Which of it a program needs is
+// said by constants that are generated for it: SCENE_PLACED, SCENE_EXTRA, SCENE_NORMAL_MAP,
+// SCENE_METAL_ROUGH, SCENE_OCCLUDED, SCENE_CUT, SCENE_UNLIT.
 
 layout(std140, binding = 1) uniform SceneMaterial {
-    vec4 diffuse;   // rgb; a: opacity
-    vec4 specular;  // rgb; w: exponent
-    vec4 emission;  // rgb; w: alpha below which nothing is there
-    bvec4 has_maps; // x: normal, y: metal and roughness; z: blended
+    vec4 diffuse;     // rgb; a: opacity
+    vec4 specular;    // rgb; w: exponent
+    vec4 emission;    // rgb; w: alpha below which nothing is there
+    vec4 factors;     // x: of the normal map, y: of occlusion, z: of roughness, w: of metalness
+    vec4 uv_rows[10]; // for each texture those of u and of v: xyz: factors of (u, v, 1); w: 1 for the second uv
+    bvec4 is;         // x: blended
 } u_material;
 
 struct Surface {
@@ -13,10 +17,30 @@ struct Surface {
     float shininess;
     vec3 emission;
     float opacity;
-    vec3 normal; // world, unit
+    vec3 normal;    // world, unit
+    float openness; // share of the ambient light that arrives
 };
 
-in vec3 v_position;
+in vec3 v_offset;
 in vec3 v_normal;
 in vec2 v_uv;
 in vec3 v_tint;
+in vec3 v_extra;
+
+// Metalness and roughness in terms of diffuse, specular and exponent; diffuse is the base colour before. The exponent is
+// the usual match of Blinn-Phong and Beckmann (Walter et al. 2007).
+void scene_metal_rough(inout Surface surface, float metalness, float roughness) {
+    vec3 base = surface.diffuse;
+    float alpha = max(roughness * roughness, 0.03);
+    surface.specular = mix(surface.specular, base, metalness);
+    surface.diffuse = base * (1.0 - metalness);
+    surface.shininess = max(2.0 / (alpha * alpha) - 2.0, 1.0);
+}
+
+// Colours of the material times those of the vertices.
+Surface scene_untextured() {
+    float opacity = u_material.diffuse.a * (SCENE_EXTRA ? v_extra.z : 1.0);
+    vec3 emission = u_material.emission.rgb * (SCENE_METAL_ROUGH ? vec3(1.0) : v_tint);
+    return Surface(v_tint * u_material.diffuse.rgb, u_material.specular.rgb, u_material.specular.w, emission, opacity,
+                   normalize(v_normal), 1.0);
+}

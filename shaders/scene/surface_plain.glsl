@@ -1,6 +1,8 @@
 // The surface at this fragment: colours of the material and of the vertices.
 
 Surface scene_surface() {
-    return Surface(v_tint * u_material.diffuse.rgb, u_material.specular.rgb, u_material.specular.w,
-                   v_tint * u_material.emission.rgb, u_material.diffuse.a, normalize(v_normal));
+    Surface surface = scene_untextured();
+    if (SCENE_CUT && surface.opacity < u_material.emission.w) discard;
+    if (SCENE_METAL_ROUGH) scene_metal_rough(surface, u_material.factors.w, u_material.factors.z);
+    return surface;
 }

@@ -1,7 +1,9 @@
 // What every effect of the catalog must survive, whatever it does: hostile pixels, depths, normals, sizes, values and
-// times, and the shipped scenes. An effect, a level, a choice gets these checks by existing; none is named here.
+// times, and the shipped scenes. An effect, a level, a choice gets these checks by existing; none is named here. What an
+// effect refuses is told beside it (refusals.hpp); any other error is a failure.
 // POSTFX_LONG=1 draws more random values and tries every level on every depth and attachment.
 #include "hard_inputs.hpp"
+#include "refusals.hpp"
 #include "scene_inputs.hpp"
 
 #include <catch2/catch.hpp>
@@ -9,7 +11,6 @@
 
 #include <cstdlib>
 #include <cstring>
-#include <optional>
 #include <random>
 
 using namespace postfx;
@@ -74,29 +75,57 @@ std::string spread(const Image& result, const Image& color) {
                : fmt::format("{} pixels became no light that a half float holds, the first {}", count, first);
 }
 
+/// A few pixels, far and near ones among them where there is depth.
+Image with_spots(Image color, float value) {
+    for (const auto& [x, y] : {std::pair{1, 4}, std::pair{4, 1}, std::pair{4, 4}, std::pair{6, 7}}) {
+        float* spot = color.pixel(color.width * x / 8, color.height * y / 8);
+        std::fill(spot, spot + color.channels, value);
+    }
+    return color;
+}
+
+/// Where two pictures differ by more than 1e-4 although the pixel's own colour is light: sums of 65504 and of what it
+/// stands for may be added up in another order.
+std::string unlike(const Image& result, const Image& expected, const Image& color) {
+    for (int y = 0; y < result.height; ++y) {
+        for (int x = 0; x < result.width; ++x) {
+            if (!is_light(color.pixel(x, y))) continue;
+            for (int c = 0; c < 3; ++c) {
+                const float found = result.at(x, y, c), wanted = expected.at(x, y, c);
+                if (std::abs(found - wanted) <= 1e-4f * (1 + std::abs(wanted))) continue;
+                return fmt::format("({}, {}) = {}, beside infinite pixels {}", x, y, found, wanted);
+            }
+        }
+    }
+    return "";
+}
+
+/// What became of the cases; each counts once.
 struct Tally {
-    int cases = 0;
+    int ran = 0;     ///< drawn, and right
     int skipped = 0; ///< rightly nothing to do: identity values, nothing to read
-    int refused = 0; ///< with a reason
+    int refused = 0; ///< as pinned beside the effect
     int failed = 0;
 
+    int cases() const { return ran + skipped + refused + failed; }
     Tally& operator+=(const Tally& other) {
-        cases += other.cases;
+        ran += other.ran;
         skipped += other.skipped;
         refused += other.refused;
         failed += other.failed;
         return *this;
     }
     void print(const std::string& name) const {
-        fmt::print("{:<22} {:5} cases: {:4} skipped as identity, {:3} refused with a reason, {} failed\n",
-                   name, cases, skipped, refused, failed);
+        fmt::print(
+            "{:<22} {:5} hard cases: {:5} ran, {:3} refused as pinned, {:4} skipped as identity, {} failed\n",
+            name, cases(), ran, refused, skipped, failed);
     }
 };
 
 /// One effect under test: its entry with defaults, and the tally of what was tried on it.
 class Trial {
 public:
-    explicit Trial(EffectPtr effect) : effect_(std::move(effect)) {}
+    Trial(EffectPtr effect, PinnedRefusals& pinned) : effect_(std::move(effect)), pinned_(pinned) {}
 
     Input input(Size size = usual_size, const Camera& camera = Camera::perspective(45, 0.1)) const {
         return ordinary_input(effect_->reads, size, camera);
@@ -105,10 +134,7 @@ public:
     int levels() const { return std::max<int>(1, static_cast<int>(effect_->levels.size())); }
 
     ChainEntry entry(int level) const {
-        Chain chain;
-        ChainEntry made = chain.add(catalog(), effect_->id);
-        made.level = level;
-        return made;
+        return {.effect = effect_, .name = effect_->id, .level = level, .values = effect_->default_values()};
     }
     ChainEntry entry() const { return entry(effect_->default_level); }
 
@@ -145,7 +171,7 @@ public:
     void check(const std::string& what, const ChainEntry& entry, const Input& input,
                Format working_format = Format::rgba32f) {
         attempt(what, entry, [&] {
-            if (!plan(entry, input, working_format)) return std::string();
+            plan(entry, input, working_format);
             const Image first = runner_.draw(input);
             runner_.draw(poison(input));
             if (!same_bits_in_all_channels(first, runner_.draw(input))) {
@@ -158,8 +184,20 @@ public:
     /// Nothing may happen to the pixels, not even to bits that arithmetic loses.
     void check_identity(const std::string& what, const ChainEntry& entry, const Input& input) {
         attempt(what, entry, [&] {
-            if (!plan(entry, input, Format::rgba32f)) return std::string("the identity was refused");
+            plan(entry, input, Format::rgba32f);
             return same_bits(runner_.draw(input), input.color) ? std::string() : "the input's bits changed";
+        });
+    }
+
+    /// To pixels around it a finite one beyond what half floats hold is what an infinite one is: as bright as light gets.
+    void check_brightest(const std::string& what, const ChainEntry& entry, Input input) {
+        attempt(what, entry, [&] {
+            const Image color = input.color;
+            input.color = with_spots(color, infinite);
+            plan(entry, input, Format::rgba32f);
+            const Image expected = runner_.draw(input);
+            const Image hostile = std::exchange(input.color, with_spots(color, 1e38f));
+            return unlike(runner_.draw(input), expected, hostile);
         });
     }
 
@@ -173,42 +211,45 @@ public:
     }
 
     Tally tally;
+    std::vector<std::string> problems; ///< one for each case that failed
 
 private:
-    /// False: the effect refuses these values, with a reason.
-    bool plan(const ChainEntry& entry, const Input& input, Format working_format) {
-        std::optional<Plan> plan;
-        try {
-            plan = planner_.plan(Chain{{entry}}, facts_of(input, working_format));
-        } catch (const Error& error) {
-            if (error.message().empty()) throw;
-            ++tally.refused;
-            return false;
-        }
-        tally.skipped += plan->effects.front().status == EffectStatus::skipped;
-        runner_.prepare(std::move(*plan));
-        return true;
+    void plan(const ChainEntry& entry, const Input& input, Format working_format) {
+        Plan plan = planner_.plan(Chain{{entry}}, facts_of(input, working_format));
+        is_skipped_ = plan.effects.front().status == EffectStatus::skipped;
+        runner_.prepare(std::move(plan));
     }
 
     /// `body` returns what went wrong.
     template<class Body>
     void attempt(const std::string& what, const ChainEntry& entry, Body body) {
-        ++tally.cases;
+        is_skipped_ = false;
         std::string problem;
         try {
             problem = body();
+        } catch (const Refusal& refusal) {
+            if (pinned_.expects(refusal)) {
+                ++tally.refused;
+                return;
+            }
+            problem = fmt::format("refuses what is not in its refusals.txt: {}", refusal.what());
         } catch (const std::exception& error) {
             problem = fmt::format("failed: {}", error.what());
         }
-        if (problem.empty()) return;
+        if (problem.empty()) {
+            ++(is_skipped_ ? tally.skipped : tally.ran);
+            return;
+        }
         ++tally.failed;
         const std::string level =
             effect_->levels.empty() ? "" : ", " + effect_->levels[static_cast<std::size_t>(entry.level)].id;
-        FAIL_CHECK(effect_->id << level << ", " << what << ": " << problem);
+        problems.push_back(fmt::format("{}{}, {}: {}", effect_->id, level, what, problem));
     }
 
     EffectPtr effect_;
-    int turn_ = -1; ///< whose turn it is in sweep_levels
+    PinnedRefusals& pinned_;
+    bool is_skipped_ = false; ///< the effect, in the case being tried
+    int turn_ = -1;           ///< whose turn it is in sweep_levels
     Planner planner_;
     Runner runner_;
 };
@@ -234,6 +275,13 @@ void try_half_precision(Trial& trial) {
         trial.check("rgba16f", trial.entry(level), input, Format::rgba16f);
         fill(input.color, largest_half);
         trial.check("rgba16f, all pixels 65504", trial.entry(level), input, Format::rgba16f);
+    }
+}
+
+void try_brightest(Trial& trial) {
+    for (int level = 0; level < trial.levels(); ++level) {
+        for (const auto& [name, entry] : trial.variants(level))
+            trial.check_brightest(name + ", a pixel of 1e38", entry, trial.input());
     }
 }
 
@@ -405,23 +453,59 @@ void try_identities(Trial& trial) {
     }
 }
 
+/// Everything above, on one effect.
+void try_all(Trial& trial) {
+    for (auto* attempt :
+         {try_defaults, try_colors, try_half_precision, try_brightest, try_geometry, try_attachments,
+          try_sizes, try_times, try_choices, try_scenes, try_extremes, try_random_values, try_identities}) {
+        attempt(trial);
+    }
+}
+
+/// What README.md promises to have run, and to be right.
+constexpr int promised_cases = 4000;
+
 } // namespace
 
 TEST_CASE("every effect of the catalog survives the hard cases") {
     REQUIRE(!catalog().effects().empty());
     fmt::print("{} random sets per effect, seed {}; {} scenes\n", random_sets(), random_seed,
                scenes().size());
+    PinnedRefusals pinned(catalog());
     Tally all;
     for (const EffectPtr& effect : catalog().effects()) {
-        Trial trial(effect);
-        for (auto* attempt :
-             {try_defaults, try_colors, try_half_precision, try_geometry, try_attachments, try_sizes,
-              try_times, try_choices, try_scenes, try_extremes, try_random_values, try_identities}) {
-            attempt(trial);
-        }
+        Trial trial(effect, pinned);
+        try_all(trial);
         trial.tally.print(effect->id);
         all += trial.tally;
+        for (const std::string& problem : trial.problems)
+            FAIL_CHECK(problem);
     }
+    for (const std::string& line : pinned.unseen())
+        FAIL_CHECK("no case was refused with: " << line);
     all.print("all effects");
     CHECK(all.failed == 0);
+    CHECK(all.ran >= promised_cases);
+}
+
+TEST_CASE("a pinned refusal is counted as one; any other, and a mistake, is a failure") {
+    Catalog fixtures;
+    fixtures.load(std::string(POSTFX_FIXTURES) + "/postfx_fixture_refusing.so");
+    PinnedRefusals pinned(fixtures);
+    const auto tried = [&](const std::string& id, double amount) {
+        Trial trial(fixtures.find(id), pinned);
+        ChainEntry entry = trial.entry();
+        entry.set("amount", amount);
+        Input input = trial.input();
+        input.attachments.clear();
+        trial.check("tried", entry, input);
+        REQUIRE(trial.tally.cases() == 1);
+        return trial;
+    };
+    for (const char* id : {"pinned", "unpinned", "mistaken"})
+        CHECK(tried(id, 0.5).tally.ran == 1);
+    CHECK(tried("pinned", 0.75).tally.refused == 1);
+    CHECK(pinned.unseen() == std::vector<std::string>{"pinned: this is never said"});
+    CHECK_THAT(tried("unpinned", 0.75).problems.at(0), Catch::Contains("nobody was told of this"));
+    CHECK_THAT(tried("mistaken", 0.75).problems.at(0), Catch::Contains("an image that does not exist"));
 }

@@ -9,6 +9,9 @@
 #include <filesystem>
 #include <fstream>
 #include <random>
+#include <thread>
+
+#include <sys/stat.h>
 
 namespace fs = std::filesystem;
 using namespace chain_fixture;
@@ -112,7 +115,7 @@ TEST_CASE("mistakes in includes and overrides") {
          R"(t.yaml:1:10: can't include "defualt.yaml": no such file; did you mean "default.yaml"?)"},
         {"include: ../../nowhere/x.yaml",
          R"(t.yaml:1:10: can't include "../../nowhere/x.yaml": no such file)"},
-        {"include: folder", R"(t.yaml:1:10: can't include "folder": is a directory, expected a file)"},
+        {"include: folder", R"(t.yaml:1:10: can't include "folder": is a directory, expected a chain)"},
         {"include: default.yaml/x", R"(t.yaml:1:10: can't include "default.yaml/x": no such file)"},
         {"include: big.yaml",
          R"(t.yaml:1:10: can't include "big.yaml": is larger than 1024 KiB, expected a chain)"},
@@ -138,13 +141,37 @@ TEST_CASE("mistakes in includes and overrides") {
     CHECK(folder.error("t.yaml") == expected);
 }
 
+TEST_CASE("a chain comes through a pipe, and its includes from the pipe's folder") {
+    const ChainFolder folder;
+    folder.write("base.yaml", "effects: [shade]");
+    const fs::path pipe = folder.path() / "pipe";
+    REQUIRE(::mkfifo(pipe.c_str(), 0600) == 0);
+    std::thread writer([&] { std::ofstream(pipe) << "include: base.yaml\neffects: [blur]"; });
+    const Chain chain = folder.read("pipe");
+    writer.join();
+    CHECK(names(chain) == Names{"shade", "blur"});
+}
+
+TEST_CASE("a chain in a pipe without a folder includes from the current one") {
+    const ChainFolder folder;
+    folder.write("base.yaml", "effects: [shade]");
+    const fs::path before = fs::current_path();
+    fs::current_path(folder.path());
+    for (const char* origin : {"standard input", "/dev/stdin", "/dev/fd/63"}) {
+        INFO(origin);
+        CHECK(names(postfx::parse_chain("include: base.yaml", origin, catalog())) == Names{"shade"});
+    }
+    fs::current_path(before);
+}
+
 TEST_CASE("files that are none") {
     const ChainFolder folder;
     folder.write("default.yaml", "effects: []");
     CHECK(folder.error("defalt.yaml") == R"(defalt.yaml: no such file; did you mean "default.yaml"?)");
     CHECK(error_of([&] { postfx::read_chain(folder.path(), catalog()); })
-          == folder.path().string() + ": is a directory, expected a file");
-    CHECK(error_of([&] { postfx::read_chain("/dev/zero", catalog()); }) == "/dev/zero: is no regular file");
+          == folder.path().string() + ": is a directory, expected a chain");
+    CHECK(error_of([&] { postfx::read_chain("/dev/zero", catalog()); })
+          == "/dev/zero: is larger than 1024 KiB, expected a chain");
     CHECK(error_of([&] { postfx::read_chain("", catalog()); }).find("no such file") != std::string::npos);
 }
 
@@ -181,7 +208,8 @@ TEST_CASE("hostile text is refused") {
     for (const char* opening : {"[", "{a: ", "- ", "? ", "[{"}) {
         CHECK_THAT(parse_error(repeat(opening, 100000)), Catch::EndsWith(": nested more than 16 deep"));
     }
-    CHECK(parse_error(repeat("]", 100000)) == "c.yaml:1:1: this is not YAML: illegal flow end");
+    CHECK(parse_error(repeat("]", 100000))
+          == "c.yaml:1:1: this is not YAML: \"]\" closes nothing that was opened");
 
     CHECK(parse_error(repeat("1,", 100000).insert(0, 1, '['))
           == "c.yaml:1:39998: more than 20000 values, expected a chain");

@@ -65,11 +65,36 @@ TEST_CASE("numbers") {
         {"1E0", 1},
         {".5", 0.5},
         {"-0.0", 0},
+        {"0x1", 1},
+        {"0o1", 1},
+        {"01", 1}, // not octal: that was YAML 1.1
+        {"1e-999", 0},
     }));
     INFO(text);
     const Chain chain = parse("effects: [blur: {intensity: " + text + "}]");
     CHECK(chain.entries[0].values[0][0] == expected);
     CHECK_FALSE(std::signbit(chain.entries[0].values[0][0]));
+}
+
+TEST_CASE("true and false in YAML's three spellings") {
+    const auto [text, expected] = GENERATE(table<std::string, bool>({{"true", true},
+                                                                     {"True", true},
+                                                                     {"TRUE", true},
+                                                                     {"false", false},
+                                                                     {"False", false},
+                                                                     {"FALSE", false}}));
+    INFO(text);
+    CHECK(parse("effects: [blur: {enabled: " + text + "}]").entries[0].enabled == expected);
+    CHECK(parse("effects: [blur: {wrap: " + text + "}]").entries[0].values[2][0] == (expected ? 1 : 0));
+}
+
+TEST_CASE("text that only looks like a mistake is legal") {
+    const auto yaml = GENERATE(as<std::string>(), "# it's {commented [out\neffects: [blur]",
+                               "effects:\n- \"blur\":\n    shape: 'round'\n",
+                               "effects:\n- blur: {\n    taps: 3, # a [ here\n    shape: \"round\"\n  }\n",
+                               "effects: [blur: {tint: [1,1,1]}]", "effects:\t[blur]\n");
+    INFO(yaml);
+    CHECK(names(parse(yaml)) == Names{"blur"});
 }
 
 TEST_CASE("one number is a grey color, a whole float is an int") {
@@ -131,7 +156,13 @@ TEST_CASE("every mistake has its message") {
         {"effects: [shade: {[radius]: 1}]", R"(c.yaml:1:19: expected a word as key, found a list)"},
         {"effects: [shade: {~: 1}]", R"(c.yaml:1:19: expected a word as key, found nothing)"},
         {"effects: [shade: {enabled: yes}]",
-         R"(c.yaml:1:28: shade.enabled: expected true or false, found "yes")"},
+         R"(c.yaml:1:28: shade.enabled: expected true or false, found "yes"; write true)"},
+        {"effects: [shade: {enabled: Off}]",
+         R"(c.yaml:1:28: shade.enabled: expected true or false, found "Off"; write false)"},
+        {"effects: [shade: {enabled: n}]",
+         R"(c.yaml:1:28: shade.enabled: expected true or false, found "n"; write false)"},
+        {"effects: [shade: {enabled: tRUE}]",
+         R"(c.yaml:1:28: shade.enabled: expected true or false, found "tRUE"; write true)"},
         {"effects: [shade: {enabled: \"true\"}]",
          R"(c.yaml:1:28: shade.enabled: expected true or false, found the text "true")"},
         {"effects: [shade: {quality: low}]", R"(c.yaml:1:28: shade has no quality levels)"},
@@ -151,8 +182,64 @@ TEST_CASE("every mistake has its message") {
          R"(c.yaml:1:27: shade.radius: expected a number in 0..1 (height), found the text "0.5")"},
         {"effects: [shade: {radius: 0.5m}]",
          R"(c.yaml:1:27: shade.radius: expected a number in 0..1 (height), found "0.5m")"},
-        {"effects: [shade: {radius: 0x1}]",
-         R"(c.yaml:1:27: shade.radius: expected a number in 0..1 (height), found "0x1")"},
+        {"effects: [shade: {radius: 0x10}]", R"(c.yaml:1:27: shade.radius = 16 is outside 0..1 (height))"},
+        {"effects: [shade: {radius: 0x}]",
+         R"(c.yaml:1:27: shade.radius: expected a number in 0..1 (height), found "0x")"},
+        {"effects: [shade: {radius: .inf}]", R"(c.yaml:1:27: shade.radius = inf is outside 0..1 (height))"},
+        {"effects: [shade: {radius: 1_0}]",
+         R"(c.yaml:1:27: shade.radius: expected a number in 0..1 (height), found "1_0")"},
+        // a decimal comma, in blocks, in maps and in lists
+        {"effects:\n- shade:\n    radius: 0,5",
+         R"(c.yaml:3:13: shade.radius: expected a number in 0..1 (height), found "0,5"; decimals are written with a point: 0.5)"},
+        {"effects: [shade: {radius: 0,5}]",
+         R"(c.yaml:1:27: radius: expected a number, found "0,5"; decimals are written with a point: 0.5)"},
+        {"effects: [shade: {radius: -0,25, enabled: true}]",
+         R"(c.yaml:1:27: radius: expected a number, found "-0,25"; decimals are written with a point: -0.25)"},
+        {"effects: [blur: {tint: [0,5, 0,2, 1]}]",
+         R"(c.yaml:1:24: blur.tint: expected [red, green, blue] or one number, each in 0..2, found 5 of them; decimals are written with a point: 0.5)"},
+        // a missing colon, blank or comma
+        {"effects:\n- shade {radius: 1}",
+         R"(c.yaml:2:3: no effect "shade {radius"; a colon is missing behind "shade")"},
+        {"effects:\n- blur {taps: 3, intensity: 1}",
+         R"(c.yaml:2:3: this is not YAML: a colon is missing behind "blur")"},
+        {"effects:\n- shade\n    radius: 1",
+         R"(c.yaml:2:3: this is not YAML: a colon is missing behind "shade")"},
+        {"effects\n- shade: {radius: 1}",
+         R"(c.yaml:1:1: this is not YAML: a colon is missing behind "effects")"},
+        {"effects\n  - shade: {radius: 1}",
+         R"(c.yaml:1:1: this is not YAML: a colon is missing behind "effects")"},
+        {"effects [shade]",
+         R"(c.yaml:1:1: a chain: expected "effects:" and a list, or "include:" and a file, found "effects [shade]"; a colon is missing behind "effects")"},
+        {"effects: [shade: {radius 1}]",
+         R"(c.yaml:1:19: shade has no parameter "radius 1"; a colon is missing behind "radius")"},
+        {"effects: [shade: {radius:1}]",
+         R"(c.yaml:1:19: shade has no parameter "radius:1"; a blank is missing behind "radius:")"},
+        {"effects: [shade: {radius = 1}]",
+         R"(c.yaml:1:19: shade has no parameter "radius = 1"; write "radius: ...", with a colon)"},
+        {"effects:\n- shade:\n    radius 1",
+         R"(c.yaml:3:5: shade: expected a map {parameter: value}, found "radius 1"; a colon is missing behind "radius")"},
+        {"effects:\n- shade:{radius: 1}",
+         R"(c.yaml:2:3: no effect "shade:{radius"; a blank is missing behind "shade:")"},
+        {"effects:\n-shade", R"(c.yaml:2:1: a chain has no key "-shade"; a blank is missing behind "-")"},
+        {"effects: [shade]\nbudget: {ms 3}",
+         R"(c.yaml:2:10: "budget" has no key "ms 3"; a colon is missing behind "ms")"},
+        {"effects: [blur: {taps: 3 intensity: 1}]",
+         R"(c.yaml:1:26: this is not YAML: a comma is missing before "intensity")"},
+        {"effects:\n- shade: radius: 1",
+         R"(c.yaml:2:16: this is not YAML: a second key stands on this line; give it a line of its own, indented further, or write {key: value})"},
+        // quotes and brackets that are not closed
+        {"effects:\n- blur: {shape: \"round}\n- shade",
+         R"(c.yaml:2:17: this is not YAML: the quote that opens here is not closed on its line)"},
+        {"effects:\n- blur: {shape: \"round}\n- blur: {shape: \"round\"}",
+         R"(c.yaml:2:17: this is not YAML: the quote that opens here is not closed on its line)"},
+        {"effects:\n- 'shade\n",
+         R"(c.yaml:2:3: this is not YAML: the quote that opens here is never closed)"},
+        {"effects:\n- shade: {radius: 1\n- blur: {taps: 3}\n",
+         R"(c.yaml:2:10: this is not YAML: the "{" that opens here is never closed)"},
+        {"effects: [shade: {radius: 1]",
+         R"(c.yaml:1:18: this is not YAML: the "{" that opens here is not closed before "]")"},
+        {"effects:\n- shade: {radius: 1}}",
+         R"(c.yaml:2:21: this is not YAML: "}" closes nothing that was opened)"},
         {"effects: [shade: {radius: +-1}]",
          R"(c.yaml:1:27: shade.radius: expected a number in 0..1 (height), found "+-1")"},
         {"effects: [shade: {radius: ++1}]",
@@ -186,9 +273,11 @@ TEST_CASE("every mistake has its message") {
         {"effects: [blur: {tint: {r: 1}}]",
          R"(c.yaml:1:24: blur.tint: expected [red, green, blue] or one number, each in 0..2, found a map)"},
         // YAML itself
-        {"effects: [blur\n", R"(c.yaml:2:1: this is not YAML: end of sequence flow not found)"},
+        {"effects: [blur\n", R"(c.yaml:1:10: this is not YAML: the "[" that opens here is never closed)"},
         {"effects:\n\t- blur\n",
-         R"(c.yaml:2:2: this is not YAML: illegal block entry; indent with spaces, not tabs)"},
+         R"(c.yaml:2:1: this is not YAML: a tab indents this line; YAML wants spaces)"},
+        {"effects:\n- shade:\n\t  radius: 1\n",
+         R"(c.yaml:3:1: this is not YAML: a tab indents this line; YAML wants spaces)"},
         {"effects: [&b blur, *b]",
          R"(c.yaml:1:11: anchors (&b) are not supported; share values with "include")"},
         {"effects: [*b]", R"(c.yaml:1:11: this is not YAML: the referenced anchor is not defined)"},
@@ -257,7 +346,8 @@ TEST_CASE("a budget on the command line") {
         return error_of([&] { postfx::parse_budget(text, "--budget"); });
     };
     CHECK(message("6") == "--budget: expected ms=MILLISECONDS or error=SHARE, found \"6\"");
-    CHECK(message("seconds=1") == "--budget:1:1: \"budget\" has no key \"seconds\"; expected one of ms, error");
+    CHECK(message("seconds=1")
+          == "--budget:1:1: \"budget\" has no key \"seconds\"; expected one of ms, error");
     CHECK(message("ms=fast") == "--budget:1:5: budget.ms: expected a number above 0, found \"fast\"");
 }
 
@@ -311,7 +401,7 @@ TEST_CASE("one effect on the command line") {
     CHECK(message("") == "--effect:1:1: expected an effect, found nothing");
     CHECK(message("blurr") == R"(--effect:1:1: no effect "blurr"; did you mean "blur"?)");
     CHECK(message("blur: {tap: 1}") == R"(--effect:1:8: blur has no parameter "tap"; did you mean "taps"?)");
-    CHECK(message("blur: {") == "--effect:1:8: this is not YAML: end of map flow not found");
+    CHECK(message("blur: {") == R"(--effect:1:7: this is not YAML: the "{" that opens here is never closed)");
     CHECK(
         message("[blur]")
         == R"(--effect:1:1: an item of "effects": expected an effect, or "effect: {parameter: value}", found a list)");

@@ -1,4 +1,5 @@
 // EXR files, written here with the library itself where write_image has no such thing.
+#include "exr_files.hpp"
 #include "image_checks.hpp"
 
 #include <ImfChannelList.h>
@@ -11,6 +12,7 @@
 #include <ImfOutputFile.h>
 #include <ImfOutputPart.h>
 #include <ImfPartType.h>
+#include <ImfRgbaFile.h>
 #include <ImfStandardAttributes.h>
 #include <ImfTiledOutputFile.h>
 
@@ -24,47 +26,6 @@ using namespace postfx;
 using namespace postfx::testing;
 
 namespace {
-
-using Box = Imath::Box2i;
-
-Box box(int x, int y, int width, int height) {
-    return Box({x, y}, {x + width - 1, y + height - 1});
-}
-
-/// A value that tells channel and place; y counts from the top, as in the file.
-float value_at(std::size_t channel, int x, int y) {
-    return static_cast<float>(channel) * 10000 + static_cast<float>(y) * 100 + static_cast<float>(x);
-}
-
-/// Float channels with value_at over the data window.
-struct Planes {
-    std::vector<std::vector<float>> values;
-    Imf::FrameBuffer frame;
-
-    Planes(Imf::Header& header, const std::vector<std::string>& names) {
-        const Box& data = header.dataWindow();
-        values.resize(names.size());
-        for (std::size_t i = 0; i < names.size(); ++i) {
-            for (int y = data.min.y; y <= data.max.y; ++y)
-                for (int x = data.min.x; x <= data.max.x; ++x)
-                    values[i].push_back(value_at(i, x, y));
-            header.channels().insert(names[i], Imf::Channel(Imf::FLOAT));
-            frame.insert(names[i], Imf::Slice::Make(Imf::FLOAT, values[i].data(), data));
-        }
-    }
-};
-
-void write_scanlines(const std::filesystem::path& file, Imf::Header header,
-                     const std::vector<std::string>& names) {
-    const Planes planes(header, names);
-    Imf::OutputFile output(file.c_str(), header);
-    output.setFrameBuffer(planes.frame);
-    output.writePixels(header.dataWindow().max.y - header.dataWindow().min.y + 1);
-}
-
-Imf::Header header_of(const Box& display, const Box& data) {
-    return Imf::Header(display, data);
-}
 
 /// The image is the display window, with value_at where it is in the data window and 0 elsewhere.
 void check_values(const Image& image, const Box& display, const Box& data, std::size_t first_channel = 0) {
@@ -109,7 +70,7 @@ TEST_CASE("Floats come back bit for bit") {
         write_image(directory / "a.exr", image);
         const ImageFile read = read_image(directory / "a.exr");
         CHECK(same_values(read.image, image));
-            CHECK(read.coding.bits != 8);
+        CHECK(read.coding.bits != 8);
         CHECK(same_values(read_image(directory / "a.exr", {.role = Role::data}).image, image));
     }
 }
@@ -212,7 +173,9 @@ TEST_CASE("Channels make layers by their prefix") {
     check_values(layer_of(file, "light"), display, display, 7);
     check_values(layer_of(file, "light.id"), display, display, 10);
 
-    check_values(read_image(file, {.role = Role::data}).image, display, display, 6); // Z is the obvious one
+    check_values(read_image(file, {.role = Role::depth}).image, display, display, 6);
+    check_values(read_image(file, {.role = Role::normal}).image, display, display, 3);
+    check_values(read_image(file, {.role = Role::data}).image, display, display, 0);
     check_values(read_image(file, {.role = Role::data, .layer = "N"}).image, display, display, 3);
     CHECK(read_image(file, {.role = Role::data, .layer = "N.Z"}).image.channels == 1);
     check_values(read_image(file, {.role = Role::data, .layer = "N.Z"}).image, display, display, 5);
@@ -223,26 +186,93 @@ TEST_CASE("Channels make layers by their prefix") {
     CHECK(message.find("light.id") != std::string::npos);
 }
 
-TEST_CASE("The obvious layer of a file of data") {
+TEST_CASE("The depth of a file") {
     const TemporaryDirectory directory;
     const Box display = box(0, 0, 2, 2);
     const std::filesystem::path file = directory / "a.exr";
-    const auto first_of = [&](const std::vector<std::string>& names) {
+    const auto depth_of = [&](const std::vector<std::string>& names) {
         write_scanlines(file, header_of(display, display), names);
-        return read_image(file, {.role = Role::data}).image.at(0, 1, 0)
+        return read_image(file, {.role = Role::depth}).image.at(0, 1, 0)
                / 10000; // the index of the channel that was taken
     };
-    CHECK(first_of({"B", "Z"}) == 1);
-    CHECK(first_of({"R", "G", "B", "depth.Z"}) == 3);
-    CHECK(first_of({"R", "G", "B", "left.Z", "depth"}) == 4);
-    CHECK(first_of({"R", "G", "B", "View.Depth.Z"}) == 3);
-    CHECK(first_of({"B", "G", "R"}) == 2); // no depth: the colour, red first
-    CHECK(first_of({"mask"}) == 0);
-    CHECK(first_of({"Y"}) == 0);
-    write_scanlines(file, header_of(display, display), {"u", "v"});
-    CHECK(error_of(file, [&] { read_image(file, {.role = Role::data}).image; }).find("u, v")
+    CHECK(depth_of({"B", "Z"}) == 1);
+    CHECK(depth_of({"R", "G", "B", "depth.Z"}) == 3);
+    CHECK(depth_of({"R", "G", "B", "left.Z", "depth"}) == 4); // the left eye is another view
+    CHECK(depth_of({"R", "G", "B", "View.Depth.Z"}) == 3);
+    CHECK(depth_of({"mask"}) == 0);
+    CHECK(depth_of({"Y"}) == 0);
+    write_scanlines(file, header_of(display, display), {"B", "G", "R"});
+    CHECK(error_of(file, [&] { read_image(file, {.role = Role::depth}); }).find("three different channels")
           != std::string::npos);
-    CHECK(read_error(file).find("no colour") != std::string::npos);
+    write_scanlines(file, header_of(display, display), {"u", "v"});
+    CHECK(error_of(file, [&] { read_image(file, {.role = Role::depth}); }).find("\"u\", \"v\"")
+          != std::string::npos);
+    CHECK(read_error(file).find("no color") != std::string::npos);
+}
+
+TEST_CASE("Luminance and chroma become colour") {
+    const TemporaryDirectory directory;
+    const std::filesystem::path file = directory / "a.exr";
+    const auto channels = GENERATE(Imf::WRITE_YC, Imf::WRITE_YCA);
+    const std::vector<Imf::Rgba> pixels(8 * 6, Imf::Rgba(0.5f, 0.25f, 0.125f, 0.75f));
+    {
+        Imf::RgbaOutputFile output(file.c_str(), 8, 6, channels);
+        output.setFrameBuffer(pixels.data(), 1, 8);
+        output.writePixels(6);
+    }
+    const Image image = read_image(file).image;
+    REQUIRE(image.channels == (channels == Imf::WRITE_YCA ? 4 : 3));
+    const float expected[4] = {0.5f, 0.25f, 0.125f, 0.75f};
+    for (int channel = 0; channel < image.channels; ++channel)
+        CHECK(image.at(3, 2, channel)
+              == Approx(expected[channel]).epsilon(1 / 64.0)); // chroma is rounded to 5 bits
+}
+
+TEST_CASE("A small file asks for little memory") {
+    const TemporaryDirectory directory;
+    const std::filesystem::path file = directory / "a.exr";
+    write_scanlines(file, header_of(box(0, 0, 16384, 16384), box(0, 0, 1, 1)), {"R", "G", "B"});
+    CHECK(read_error(file).find("absurd size") != std::string::npos);
+    // What an empty frame of 4K looks like is fine.
+    write_scanlines(file, header_of(box(0, 0, 4096, 2160), box(0, 0, 1, 1)), {"R", "G", "B"});
+    CHECK(read_image(file).image.width == 4096);
+}
+
+TEST_CASE("A deep part is in nobody's way") {
+    const TemporaryDirectory directory;
+    const std::filesystem::path file = directory / "a.exr";
+    write_deep_part(file);
+    const ImageFile read = read_image(file);
+    check_values(read.image, box(0, 0, 2, 2), box(0, 0, 2, 2));
+    REQUIRE(read.warnings.size() == 1);
+    CHECK(read.warnings[0].find("part 2 holds deep data") != std::string::npos);
+    CHECK(describe_image(open_image(file)).parts.size() == 2);
+}
+
+TEST_CASE("A truncated part is in nobody's way") {
+    const TemporaryDirectory directory;
+    const std::filesystem::path file = directory / "a.exr";
+    write_parts(file, {{"rgba", "", {"R", "G", "B"}}, {"depth", "", {"Z"}}});
+    const std::string bytes = file_bytes(file);
+    put_bytes(file, bytes.substr(0, bytes.size() - 1));
+    check_values(read_image(file).image, box(0, 0, 2, 2), box(0, 0, 2, 2));
+    CHECK(error_of(file, [&] { read_image(file, {.role = Role::depth}); }).find("truncated")
+          != std::string::npos);
+}
+
+TEST_CASE("Depth that is a grey picture") {
+    const TemporaryDirectory directory;
+    const std::filesystem::path file = directory / "a.exr";
+    Image grey(2, 1, 4);
+    grey.values = {5, 5, 5, 1, 7, 7, 7, 1};
+    write_image(file, grey);
+    const ImageFile depth = read_image(file, {.role = Role::depth});
+    CHECK(depth.image.values == std::vector<float>{5, 7});
+    CHECK(depth.warnings.size() == 1);
+    grey.values[4] = 8;
+    write_image(file, grey);
+    CHECK(error_of(file, [&] { read_image(file, {.role = Role::depth}); }).find("no depth")
+          != std::string::npos);
 }
 
 TEST_CASE("A colour that is not whole is filled with 0") {
@@ -275,37 +305,6 @@ TEST_CASE("Stereo: the unprefixed view, else the default one, else the first") {
     check_values(read_image(file).image, display, display, 3);
 }
 
-TEST_CASE("Parts: channels of the same name get their part's view or name") {
-    const TemporaryDirectory directory;
-    const std::filesystem::path file = directory / "a.exr";
-    const Box display = box(0, 0, 6, 5), data = box(1, 1, 3, 2);
-    const std::vector<std::vector<std::string>> names = {
-        {"R", "G", "B"}, {"depth.Z"}, {"R", "G", "B"}, {"R", "G", "B"}};
-    std::vector<Imf::Header> headers;
-    for (int part = 0; part < 4; ++part) {
-        headers.push_back(header_of(display, part == 0 ? display : data));
-        headers.back().setName("name" + std::to_string(part));
-        headers.back().setType(Imf::SCANLINEIMAGE);
-    }
-    headers[2].setView("right");
-    std::vector<Planes> planes;
-    for (std::size_t part = 0; part < 4; ++part)
-        planes.emplace_back(headers[part], names[part]);
-    {
-        Imf::MultiPartOutputFile output(file.c_str(), headers.data(), 4);
-        for (int part = 0; part < 4; ++part) {
-            Imf::OutputPart out(output, part);
-            out.setFrameBuffer(planes[static_cast<std::size_t>(part)].frame);
-            out.writePixels(part == 0 ? 5 : 2);
-        }
-    }
-    const ImageFile read = read_image(file);
-    check_values(read.image, display, display);
-    for (const char* layer : {"depth", "right", "name3"})
-        check_values(layer_of(file, layer), display, data);
-    check_values(read_image(file, {.role = Role::data}).image, display, data);
-}
-
 TEST_CASE("What is refused, and why") {
     const TemporaryDirectory directory;
     const std::filesystem::path file = directory / "a.exr";
@@ -322,7 +321,8 @@ TEST_CASE("What is refused, and why") {
             output.setFrameBuffer(frame);
             output.writePixels(2);
         }
-        CHECK(read_error(file).find("RY is subsampled") != std::string::npos);
+        CHECK(error_of(file, [&] { layer_of(file, "RY"); }).find("RY is subsampled") != std::string::npos);
+        CHECK(read_image(file).image.channels == 1); // nobody asks for RY
     }
     SECTION("deep data") {
         Imf::Header header(1, 1);
@@ -342,7 +342,8 @@ TEST_CASE("What is refused, and why") {
             output.setFrameBuffer(frame);
             output.writePixels(1);
         }
-        CHECK(read_error(file).find("deep") != std::string::npos);
+        CHECK(read_error(file).find("deep data") != std::string::npos);
+        CHECK(read_error(file).find("flatten it") != std::string::npos);
     }
     SECTION("absurd windows") {
         write_image(file, Image(3, 3, 1));
@@ -404,7 +405,12 @@ TEST_CASE("The beach ball of others") {
     CHECK(layer_of(file, "left.Z").channels == 1);
     CHECK(layer_of(file, "disparityL").channels == 2);
     const Image depth = layer_of(file, "Z");
-    CHECK(same_values(read_image(file, {.role = Role::data}).image, depth));
+    CHECK(same_values(read_image(file, {.role = Role::depth}).image, depth));
+    CHECK(read_image(file, {.role = Role::depth, .view = "left"}).layer == "Z");
+    CHECK(
+        same_values(read_image(file, {.role = Role::depth, .view = "left"}).image, layer_of(file, "left.Z")));
+    CHECK(same_values(read_image(file, {.view = "left"}).image, layer_of(file, "left")));
+    CHECK(ball.view == "right"); // the default one of its multiView attribute
     // Data window of the header: x from 654 to 1564, y from 245 to 1120 from the top. Z = 0 is "nothing
     // there".
     std::size_t hit = 0;

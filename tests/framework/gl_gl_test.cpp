@@ -9,6 +9,8 @@
 
 #include <postfx/error.hpp>
 
+#include <testing.hpp>
+
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
@@ -309,8 +311,7 @@ int main(int argc, char** argv) {
     try {
         context = std::make_unique<gl::HeadlessContext>(true);
     } catch (const Error& error) {
-        std::fprintf(stderr, "skipped: %s\n", error.what());
-        return 77;
+        return postfx::testing::skipped(error.what());
     }
     const int failed = Catch::Session().run(argc, argv);
     const std::vector<std::string> messages = gl::take_debug_messages();

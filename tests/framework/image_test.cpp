@@ -1,5 +1,6 @@
 // PNG, JPEG, HDR and PFM files. EXR has a test of its own.
 #include "image_checks.hpp"
+#include "png_bytes.hpp"
 
 #include <image/srgb.hpp>
 
@@ -15,30 +16,6 @@ using namespace postfx;
 using namespace postfx::testing;
 
 namespace {
-
-std::string big_endian(std::uint32_t x) {
-    return {static_cast<char>(x >> 24), static_cast<char>(x >> 16), static_cast<char>(x >> 8),
-            static_cast<char>(x)};
-}
-
-std::string png_chunk(const std::string& type, const std::string& data) {
-    return big_endian(static_cast<std::uint32_t>(data.size())) + type + data
-           + "crc?"; // the reader checks none
-}
-
-/// A PNG by hand, uncompressed; `rows` from the top, each with its filter byte.
-std::string stored_png(std::uint32_t width, std::uint32_t height, int bits, int color_type,
-                       const std::string& rows) {
-    const auto length = static_cast<std::uint16_t>(rows.size());
-    const auto inverse = static_cast<std::uint16_t>(~length);
-    std::string zlib = "\x78\x01\x01";
-    for (const std::uint16_t x : {length, inverse})
-        zlib += {static_cast<char>(x & 255), static_cast<char>(x >> 8)};
-    zlib += rows + "adlr";
-    const std::string header = big_endian(width) + big_endian(height) + static_cast<char>(bits)
-                               + static_cast<char>(color_type) + std::string(3, '\0');
-    return "\x89PNG\r\n\x1a\n" + png_chunk("IHDR", header) + png_chunk("IDAT", zlib) + png_chunk("IEND", "");
-}
 
 /// Floats with payloads that arithmetic would lose.
 Image peculiar_image(int channels) {
@@ -188,7 +165,7 @@ TEST_CASE("JPEG") {
     std::string hostile = bytes;
     hostile.replace(hostile.find("\xff\xc4") + 5, 16, 16, '\xff');
     put_bytes(directory / "hostile.jpg", hostile);
-    CHECK(read_error(directory / "hostile.jpg").find("Huffman") != std::string::npos);
+    CHECK(read_error(directory / "hostile.jpg").find("damaged JPEG") != std::string::npos);
 }
 
 TEST_CASE("PFM keeps every bit, in both byte orders, bottom row first") {
@@ -206,6 +183,10 @@ TEST_CASE("PFM keeps every bit, in both byte orders, bottom row first") {
         read_bytes_as(directory / "l.pfm", std::string("Pf 2 1 -1\n\0\0\x80\x3f\0\0\0\x40", 18));
     CHECK(little.values == std::vector<float>{1.0f, 2.0f});
     CHECK(little.width == 2);
+    const ImageFile scaled =
+        read_image(ImageSource{"s.pfm", std::string("Pf 2 1 -4\n\0\0\x80\x3f\0\0\0\x40", 18)});
+    CHECK(scaled.image.values == std::vector<float>{1.0f, 2.0f});
+    CHECK(scaled.warnings.size() == 1);
 }
 
 TEST_CASE("PFM and HDR have no alpha, HDR no grey") {
@@ -275,9 +256,9 @@ TEST_CASE("HDR rows: order and the oldest runs") {
     CHECK(read_error(directory / "bad.hdr").find("run") != std::string::npos);
     put_bytes(directory / "zero.hdr", header + "-Y 1 +X 8\n" + std::string("\2\2\0\x08\0\0\0\0", 8));
     CHECK(read_error(directory / "zero.hdr").find("run") != std::string::npos);
-    put_bytes(directory / "xyze.hdr", "#?RADIANCE\nFORMAT=32-bit_rle_xyze\n\n-Y 1 +X 1\nabcd");
-    CHECK(read_error(directory / "xyze.hdr").find("xyze") != std::string::npos);
-    put_bytes(directory / "turned.hdr", header + "+X 1 -Y 1\nabcd");
+    put_bytes(directory / "abcd.hdr", "#?RADIANCE\nFORMAT=32-bit_abcd\n\n-Y 1 +X 1\nabcd");
+    CHECK(read_error(directory / "abcd.hdr").find("32-bit_abcd") != std::string::npos);
+    put_bytes(directory / "turned.hdr", header + "+X 1 -X 1\nabcd");
     CHECK(read_error(directory / "turned.hdr").find("resolution") != std::string::npos);
 }
 
@@ -339,7 +320,8 @@ TEST_CASE("What is no image is refused") {
     CHECK(read_error(directory / "missing.png").find("no such file") != std::string::npos);
     CHECK(read_error(directory.path()).find("directory") != std::string::npos);
     CHECK(read_error(directory / "empty.png").find("empty") != std::string::npos);
-    CHECK(read_error(directory / "words.png").find("PNG, JPEG, OpenEXR, HDR, PFM") != std::string::npos);
+    CHECK(read_error(directory / "words.png").find("PNG, JPEG, HEIC, TIFF, WebP, OpenEXR, HDR, PFM, PNM, TGA")
+          != std::string::npos);
     CHECK(read_error("/dev/zero").find("larger") != std::string::npos);
     const auto file = directory / "a.png";
     CHECK(error_of(file, [&] { read_image(file, {.role = Role::data, .layer = "Z"}).image; }).find("layers")
@@ -351,11 +333,12 @@ TEST_CASE("Endings") {
     CHECK_NOTHROW(check_writable_kind("b.exr"));
     CHECK(error_of("b.exe", [] { check_writable_kind("b.exe"); }).find("did you mean \".exr\"")
           != std::string::npos);
-    CHECK(error_of("b", [] { check_writable_kind("b"); }).find(".png, .exr, .hdr, .pfm")
+    CHECK(error_of("b", [] { check_writable_kind("b"); }).find(".png, .jpg, .jpeg, .exr, .hdr, .pfm")
           != std::string::npos);
     CHECK(is_display_kind("b.png"));
     CHECK_FALSE(is_display_kind("b.exr"));
-    CHECK(error_of("b.jpg", [] { write_image("b.jpg", Image(1, 1, 3)); }).find(".jpg") != std::string::npos);
+    CHECK(is_display_kind("b.JPG"));
+    CHECK(error_of("b.gif", [] { write_image("b.gif", Image(1, 1, 3)); }).find(".gif") != std::string::npos);
 }
 
 TEST_CASE("Pictures that can't be written") {
@@ -391,7 +374,7 @@ TEST_CASE("Places that can't be written to") {
     const TemporaryDirectory directory;
     const Image image(2, 2, 3);
     const auto inside_missing = directory / "missing/a.png";
-    CHECK(error_of(inside_missing, [&] { write_image(inside_missing, image); }).find("No such file")
+    CHECK(error_of(inside_missing, [&] { write_image(inside_missing, image); }).find("there is no folder")
           != std::string::npos);
     std::filesystem::create_directory(directory / "folder.png");
     const auto folder = directory / "folder.png";
@@ -427,4 +410,46 @@ TEST_CASE("Links are followed, names may be as long as names get") {
     const mode_t mask = umask(0);
     umask(mask);
     CHECK(std::filesystem::status(directory / longest).permissions() == std::filesystem::perms(0666 & ~mask));
+}
+
+TEST_CASE("Links to what is not there yet are written through") {
+    namespace fs = std::filesystem;
+    const TemporaryDirectory directory;
+    fs::create_directory(directory / "renders");
+    fs::create_symlink("renders/real.pfm", directory / "dangling.pfm");
+    fs::create_symlink("dangling.pfm", directory / "chain.pfm");
+    write_image(directory / "chain.pfm", Image(1, 1, 1, 2.0f));
+    CHECK(fs::is_symlink(directory / "chain.pfm"));
+    CHECK(fs::is_symlink(directory / "dangling.pfm"));
+    CHECK(fs::is_regular_file(fs::symlink_status(directory / "renders/real.pfm")));
+    CHECK(read_image(directory / "chain.pfm").image.values == std::vector<float>{2.0f});
+
+    // ".." counts from where a link to a folder leads, not from where it stands.
+    fs::create_directories(directory / "far/away");
+    fs::create_directory_symlink(directory / "far/away", directory / "near");
+    fs::create_symlink("../up.pfm", directory / "near/up.pfm");
+    write_image(directory / "near/up.pfm", Image(1, 1, 1, 3.0f));
+    CHECK(read_image(directory / "far/up.pfm").image.values == std::vector<float>{3.0f});
+
+    fs::create_symlink("nowhere/real.pfm", directory / "lost.pfm");
+    const std::string lost =
+        error_of(directory / "lost.pfm", [&] { write_image(directory / "lost.pfm", Image(1, 1, 1)); });
+    CHECK(lost.find("there is no folder " + (directory / "nowhere").string()) != std::string::npos);
+    CHECK(fs::is_symlink(directory / "lost.pfm"));
+
+    fs::create_symlink("b.pfm", directory / "a.pfm");
+    fs::create_symlink("a.pfm", directory / "b.pfm");
+    error_of(directory / "a.pfm", [&] { write_image(directory / "a.pfm", Image(1, 1, 1)); });
+    CHECK(fs::is_symlink(directory / "a.pfm"));
+}
+
+TEST_CASE("A kind that is named goes before the ending") {
+    const TemporaryDirectory directory;
+    const Image image(2, 1, 1, 2.0f);
+    write_image(directory / "picture.png", image, {.kind = "pfm"});
+    CHECK(same_values(read_image(directory / "picture.png").image, image));
+    CHECK_NOTHROW(check_writable_kind("-", "exr"));
+    CHECK(is_display_kind("a.exr", "png"));
+    CHECK(error_of("a.png", [] { check_writable_kind("a.png", "gif"); }).find("its kind is \".gif\"")
+          != std::string::npos);
 }

@@ -64,6 +64,18 @@ std::string error_of(const Chain& chain, const Facts& facts = facts_of()) {
     return "";
 }
 
+/// Does an effect refuse its values? Mistakes of effects are none.
+bool is_refusal(const Chain& chain) {
+    try {
+        plan_of(chain);
+    } catch (const postfx::Refusal&) {
+        return true;
+    } catch (const postfx::Error&) {
+        return false;
+    }
+    return false;
+}
+
 /// Everything that a plan says, as text.
 std::string text_of(const Plan& plan) {
     std::ostringstream text;
@@ -379,8 +391,8 @@ TEST_CASE("every fault of a plan is one message") {
          "pass compose: depth gets an image that does not exist (is an attachment missing?)"},
         {"image_of_nowhere",
          "pass compose: picture gets an image that does not exist (is an attachment missing?)"},
-        {"no_pixels", "pass small wants 0x5 pixels"},
-        {"too_many_pixels", "pass large wants 16385x5 pixels"},
+        {"no_pixels", "pass small wants 0x5 pixels, a side has 1 to 32768"},
+        {"too_many_pixels", "pass large wants 32769x5 pixels, a side has 1 to 32768"},
         {"too_many_inputs", "compose declares too many inputs"},
         {"too_many_textures", "pass raw reads 17 textures, 16 are sure"},
         {"derivative", "derivative.glsl can't be composed: line 2: uses dFdx"},
@@ -399,8 +411,10 @@ TEST_CASE("every fault of a plan is one message") {
         {"unknown_identity", "would be skipped for the unknown kind \"roughly\""},
         {"fails_silently", "plan() failed with status 3"},
     };
-    for (const auto& [effect, message] : faults)
+    for (const auto& [effect, message] : faults) {
         CHECK(error_of(chain_of({effect})) == effect + ": " + message);
+        CHECK(is_refusal(chain_of({effect})) == (effect == "refuses"));
+    }
     // These name the author's own file.
     CHECK(error_of(chain_of({"bad_include"}))
           == "frag_coord.glsl: bad_include: can't be included: line 2: uses gl_FragCoord");

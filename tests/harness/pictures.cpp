@@ -11,6 +11,7 @@
 #include <cstring>
 #include <filesystem>
 #include <limits>
+#include <numbers>
 #include <random>
 
 namespace postfx::testing {
@@ -71,6 +72,31 @@ Image scaled(Image image, float factor) {
     for (float& value : image.values)
         value *= factor;
     return image;
+}
+
+Image part_of(const Image& image, const Part& part) {
+    Image result(part.width, part.height, image.channels);
+    for (int y = 0; y < part.height; ++y) {
+        std::copy_n(image.pixel(part.x, part.y + y), part.width * image.channels, result.pixel(0, y));
+    }
+    return result;
+}
+
+Input part_of(const Input& input, const Part& part) {
+    Input result = input;
+    result.color = part_of(input.color, part);
+    for (auto& [name, image] : result.attachments)
+        image = part_of(input.attachments.at(name), part);
+    const auto axis = [](double whole_axis, int whole, int begin, int size) {
+        return ((whole_axis + 1) * whole - 2 * begin) / size - 1;
+    };
+    Camera& camera = result.camera;
+    const double share = double(part.height) / input.color.height;
+    camera.vertical_fov = std::atan(camera.tan_half_fov() * share) * 360 / std::numbers::pi;
+    camera.vertical_extent *= share;
+    camera.principal_point = {axis(input.camera.principal_point[0], input.color.width, part.x, part.width),
+                              axis(input.camera.principal_point[1], input.color.height, part.y, part.height)};
+    return result;
 }
 
 Worst worst_difference(const Image& result, const Image64& expected) {

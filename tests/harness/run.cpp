@@ -37,22 +37,33 @@ void require_gl() {
     if (!has_gl(&why)) throw Error(why);
 }
 
+/// `id` is a parameter, or a channel of a color: "tint.2".
+void set_number(ChainEntry& entry, const std::string& id, double value) {
+    const std::size_t dot = id.find('.');
+    if (dot == std::string::npos) {
+        if (entry.set(id, value)) return;
+        throw Error(fmt::format("{}.{} = {} is out of range", entry.effect->id, id, value));
+    }
+    const std::string parameter = id.substr(0, dot);
+    const auto index = entry.effect->find_parameter(parameter);
+    if (!index) throw Error(fmt::format("{} has no parameter {}", entry.effect->id, parameter));
+    entry.values[*index][static_cast<std::size_t>(id[dot + 1] - '0')] = value;
+}
+
 Chain single(const std::string& effect, const Values& values) {
     Chain chain;
     ChainEntry& entry = chain.add(catalog(), effect);
     for (const auto& [id, value] : values) {
-        const std::size_t dot = id.find('.');
-        const std::string parameter = id.substr(0, dot);
-        if (parameter == "quality") {
-            entry.level = static_cast<int>(value);
-        } else if (parameter == "skip") {
-            chain.skip = static_cast<Skip>(static_cast<int>(value));
-        } else if (dot != std::string::npos) {
-            const auto index = entry.effect->find_parameter(parameter);
-            if (!index) throw Error(fmt::format("{} has no parameter {}", effect, parameter));
-            entry.values[*index][static_cast<std::size_t>(id[dot + 1] - '0')] = value;
-        } else if (!entry.set(parameter, value)) {
-            throw Error(fmt::format("{}.{} = {} is out of range", effect, id, value));
+        if (id == "quality") {
+            set_level(entry, value.word);
+        } else if (id == "skip") {
+            const auto skip = skip_by_word(value.word);
+            if (!skip) throw Error(fmt::format("skip: expected a word of Skip, found \"{}\"", value.word));
+            chain.skip = *skip;
+        } else if (!value.word.empty()) {
+            throw Error(fmt::format("{}.{} is a number here, found \"{}\"", effect, id, value.word));
+        } else {
+            set_number(entry, id, value.number);
         }
     }
     return chain;
@@ -83,6 +94,23 @@ Image run(const Chain& chain, const Input& input, const Facts& facts) {
 const Catalog& catalog() {
     static const Catalog found = Catalog::discover();
     return found;
+}
+
+std::vector<std::string> names_of_levels(const EffectInfo& effect) {
+    std::vector<std::string> names;
+    for (const LevelInfo& level : effect.levels)
+        names.push_back(level.id);
+    return names.empty() ? std::vector<std::string>{""} : names;
+}
+
+void set_level(ChainEntry& entry, std::string_view level) {
+    const std::vector<std::string> names = names_of_levels(*entry.effect);
+    const auto found = std::find(names.begin(), names.end(), level);
+    if (found == names.end()) {
+        throw Error(Place{.effect = entry.name},
+                    fmt::format("has no level \"{}\"; expected one of {}", level, fmt::join(names, ", ")));
+    }
+    entry.level = static_cast<int>(found - names.begin());
 }
 
 Facts facts_of(const Input& input, Format working_format) {
@@ -149,6 +177,12 @@ double ReferenceInput::value(const std::string& id) const {
     return found->second;
 }
 
+int ReferenceInput::level_among(std::initializer_list<std::string_view> names) const {
+    const auto found = std::find(names.begin(), names.end(), level);
+    if (found == names.end()) throw Error(fmt::format("the reference has no level \"{}\"", level));
+    return static_cast<int>(found - names.begin());
+}
+
 ReferenceInput reference_input(const std::string& effect, const Input& input, const Values& values) {
     ReferenceInput result;
     result.color = convert<double>(input.color);
@@ -170,7 +204,7 @@ ReferenceInput reference_input(const std::string& effect, const Input& input, co
             }
         }
     }
-    result.values["quality"] = entry.level;
+    result.level = names_of_levels(*entry.effect)[static_cast<std::size_t>(entry.level)];
     return result;
 }
 

@@ -4,9 +4,11 @@
 
 #include <postfx/postfx.hpp>
 
-#include <functional>
+#include <concepts>
+#include <initializer_list>
 #include <map>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace postfx::testing {
@@ -22,13 +24,42 @@ struct Input {
     std::uint32_t seed = 0;
 };
 
-/// Parameter values by id; a choice by its index. What is not named has its default. "quality" is the level's
-/// index, "skip" the chain's Skip as a number.
-using Values = std::map<std::string, double>;
+/// A test's own enum of words, with a function word_of() beside it.
+template<class T>
+concept HasWord = requires(const T& thing) {
+    { word_of(thing) } -> std::convertible_to<std::string_view>;
+};
 
-/// Is there a GL 4.5 context on this machine? If not, `why` says what was found; GL tests then print it and
-/// skip.
+/// A parameter's number, or a word.
+struct Setting {
+    Setting() = default;
+    Setting(double number) : number(number) {}
+    template<std::convertible_to<std::string_view> Word>
+    Setting(const Word& word) : word(word) {}
+    template<HasWord Named>
+    Setting(const Named& named) : word(word_of(named)) {}
+
+    double number = 0;
+    std::string word; ///< not empty: it counts and not the number
+    bool operator==(const Setting&) const = default;
+};
+
+/// Parameter values by id; a choice by its index. What is not named has its default. "quality" is the level's name,
+/// "skip" the word of the chain's Skip.
+using Values = std::map<std::string, Setting>;
+
+/// The names of the effect's levels; {""} if it has one quality only.
+std::vector<std::string> names_of_levels(const EffectInfo& effect);
+/// By its name; "" is the only quality of an effect without levels. Throws Error when the effect has no such level.
+void set_level(ChainEntry& entry, std::string_view level);
+
+/// Is there a GL 4.5 context on this machine? If not, `why` says what was found; GL tests then skip.
 bool has_gl(std::string* why = nullptr);
+/// Does a test that can't run without OpenGL or a window fail instead of being skipped? POSTFX_REQUIRE_GL=1 says so.
+bool requires_gl();
+/// What main() returns when the test can't run here, after printing why: 77, which CTest shows as skipped, or 1 if
+/// OpenGL is required.
+int skipped(const std::string& why);
 
 /// Run one effect, in rgba32f working targets unless told otherwise; the result has 4 channels.
 /// Uses the plugin of the catalog that the build made. Throws postfx::Error.
@@ -64,8 +95,7 @@ private:
 /// The plan of one effect for that input (no GL).
 Plan plan_effect(const std::string& effect, const Input& input, const Values& values = {});
 
-/// Everything that a reference needs, as plain numbers. `values` holds every declared parameter (colors: id.0
-/// .1 .2).
+/// Everything that a reference needs. `values` holds every declared parameter as a number (colors: id.0 .1 .2).
 struct ReferenceInput {
     Image64 color;
     std::map<std::string, Image64> attachments;
@@ -73,8 +103,11 @@ struct ReferenceInput {
     double time = 0;
     std::uint32_t frame = 0;
     std::uint32_t seed = 0;
+    std::string level; ///< its name; empty if the effect has one quality only
     std::map<std::string, double> values;
     double value(const std::string& id) const;
+    /// Where `level` stands in the reference's own list of names. Throws Error when it is not in it.
+    int level_among(std::initializer_list<std::string_view> names) const;
 };
 /// The float64 reference's input for the same effect, input and values.
 ReferenceInput reference_input(const std::string& effect, const Input& input, const Values& values = {});
@@ -95,6 +128,15 @@ Image three_channels(const Image& image);
 Image mirrored(const Image& image);
 /// Every number, alpha too, times the factor.
 Image scaled(Image image, float factor);
+
+/// A part of a picture, pixels from the lower left corner.
+struct Part {
+    int x = 0, y = 0, width = 1, height = 1;
+};
+Image part_of(const Image& image, const Part& part);
+/// What that part shows, by the camera that sees nothing else: the axis stays where it is in the scene, so it does not
+/// lie in the part's middle.
+Input part_of(const Input& input, const Part& part);
 
 // ---- comparing
 

@@ -4,6 +4,7 @@
 #include <catch2/catch.hpp>
 
 #include <temporary_directory.hpp>
+#include <testing.hpp>
 
 #include <filesystem>
 #include <fstream>
@@ -56,6 +57,12 @@ inline Outcome run_command(const std::vector<std::string>& command,
 inline Outcome run_program(std::vector<std::string> arguments, const std::filesystem::path& directory = ".") {
     arguments.insert(arguments.begin(), POSTFX_BUILD_DIRECTORY "/postfx");
     return run_command(arguments, directory);
+}
+
+/// Says that the test case can't go on here for want of OpenGL or a window; it fails if they are required.
+inline void skip_case(const std::string& why) {
+    if (requires_gl()) FAIL(why);
+    WARN("skipped: " << why);
 }
 
 /// It ended with status 2 and one line on stderr that has `words`, and printed nothing else.

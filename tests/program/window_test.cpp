@@ -7,7 +7,6 @@
 #include <catch2/catch.hpp>
 
 #include <cstdlib>
-#include <iostream>
 #include <string>
 
 using namespace postfx;
@@ -17,10 +16,19 @@ namespace {
 
 const std::string program = std::string(POSTFX_BUILD_DIRECTORY) + "/postfx";
 
-bool can_open_windows() {
-    if (std::system("command -v xvfb-run > /dev/null 2>&1") == 0) return true;
-    std::cout << "skipped: xvfb-run is not installed (package xvfb)\n";
+/// Is the command there that this Debian package has? If not, the test case can't go on.
+bool has_command(const std::string& command, const std::string& package) {
+    if (std::system(("command -v " + command + " > /dev/null 2>&1").c_str()) == 0) return true;
+    skip_case(command + " is not installed (package " + package + ")");
     return false;
+}
+
+bool can_open_windows() {
+    return has_command("xvfb-run", "xvfb");
+}
+
+bool can_press_keys() {
+    return can_open_windows() && has_command("xdotool", "xdotool");
 }
 
 Outcome under_display(std::vector<std::string> command) {
@@ -58,18 +66,14 @@ TEST_CASE("the window shows what render writes") {
     REQUIRE(viewed.status == 0);
     CHECK(viewed.out.find("F12") != std::string::npos); // the keys are told
     REQUIRE(run_command(render).status == 0);
-    const Difference difference = compare(read_image(scratch / "view.png").image,
-                                          read_image((scratch / "render.png").string()).image);
+    const Difference difference =
+        compare(read_image(scratch / "view.png").image, read_image((scratch / "render.png").string()).image);
     // The same driver, scene, time and noise; GLX may choose another visual but draws into our own targets.
     CHECK(difference.psnr > 50);
 }
 
 TEST_CASE("keys toggle effects, help, save a picture, pause and leave") {
-    if (!can_open_windows()) return;
-    if (std::system("command -v xdotool > /dev/null 2>&1") != 0) {
-        std::cout << "skipped: xdotool is not installed (package xdotool)\n";
-        return;
-    }
+    if (!can_press_keys()) return;
     const TemporaryDirectory scratch;
     const Outcome outcome = view_with_keys("cornell --size 160x90", 0, "h 2 2 p F12 Escape", scratch.path());
     INFO(outcome.out << outcome.err);
@@ -92,11 +96,7 @@ TEST_CASE("without a display the window says what to do") {
 }
 
 TEST_CASE("a budget is kept while the window is open") {
-    if (!can_open_windows()) return;
-    if (std::system("command -v xdotool > /dev/null 2>&1") != 0) {
-        std::cout << "skipped: xdotool is not installed (package xdotool)\n";
-        return;
-    }
+    if (!can_press_keys()) return;
     const TemporaryDirectory scratch;
     // No device is as quick as these curves say: the levels that they allow have to come down, and to fade.
     put_bytes(scratch / "curves.json", R"({

@@ -272,6 +272,34 @@ TEST_CASE("a shifted lens shows the same from the same place, moved sideways") {
     check_quiet();
 }
 
+TEST_CASE("an off-centre camera draws the part of a larger picture") {
+    constexpr int wide = 128, high = 64;
+    for (const char* lens : {"vertical_fov: 60", "orthographic_extent: 4, far: 50"}) {
+        SceneRenderer drawn =
+            renderer("camera: {position: [0, 1, 4], look_at: [0, 0.5, 0], " + std::string(lens)
+                     + "}\n"
+                       "materials: {white: {diffuse: 1, specular: 0}}\n"
+                       "nodes:\n"
+                       "  - {position: [0.9, 0.6, 0], mesh: {sphere: {radius: 0.8}}, material: white}\n"
+                       "  - {mesh: {plane: {size: [20, 20]}}, material: white}\n");
+        postfx::Camera camera = drawn.scene().camera_at(0);
+        const Image whole =
+            read(drawn.render(wide, high, 0, {"depth"}, CameraOverride{camera, {}}), "depth", wide, high);
+        camera.principal_point = {-1, 0}; // the axis lies on the left border of the right half
+        const Image part = read(drawn.render(wide / 2, high, 0, {"depth"}, CameraOverride{camera, {}}),
+                                "depth", wide / 2, high);
+        int different = 0;
+        for (int y = 0; y < high; ++y) {
+            for (int x = 0; x < wide / 2; ++x) {
+                const float expected = whole.at(wide / 2 + x, y, 0);
+                // Interpolated from other corners of clipped triangles.
+                different += std::abs(part.at(x, y, 0) - expected) > 1e-5f + 1e-4f * expected;
+            }
+        }
+        CHECK(different <= 4); // pixels of the ball's outline, whose corners are rounded to 1/256 pixel
+    }
+}
+
 TEST_CASE("time alone decides, and steady frames make no OpenGL objects") {
     auto scene =
         renderer("camera: {position: [0, 1, 5], look_at: [0, 0, 0]}\n"
@@ -375,10 +403,7 @@ TEST_CASE("a bare model is neither burnt out nor dark, whatever it reflects") {
 
 int main(int argc, char* argv[]) {
     std::string why;
-    if (!postfx::testing::has_gl(&why)) {
-        std::cout << "skipped: " << why << "\n";
-        return 77;
-    }
+    if (!postfx::testing::has_gl(&why)) return postfx::testing::skipped(why);
     const postfx::gl::HeadlessContext context(true);
     postfx::gl::enable_debug_output();
     return Catch::Session().run(argc, argv);

@@ -3,18 +3,23 @@
 #include <catch2/catch.hpp>
 
 #include <postfx/error.hpp>
-#include <scene/assets.hpp>
 #include <scene/generators.hpp>
+#include <scene/model.hpp>
 #include <scene/scene.hpp>
+#include <temporary_directory.hpp>
 
 #include <glm/gtc/matrix_transform.hpp>
 
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
+#include <fstream>
 #include <iostream>
 #include <numbers>
 #include <string>
+#include <thread>
+
+#include <sys/stat.h>
 
 using namespace postfx::host;
 
@@ -113,8 +118,8 @@ TEST_CASE("a mistake in a scene file is one message with its place") {
          "s.yaml:3:33: there is no material \"rde\"; did you mean \"red\"?"},
         {"materials:\n  a: {diffuse: [2, 0, 0]}", "s.yaml:2:17: 2 is out of range, expected 0 to 1"},
         {"materials:\n  a: {emission: .inf}", "s.yaml:2:17: expected a number, found \".inf\""},
-        {"materials:\n  a: {diffuse_texture: no.png}", "s.yaml:2:24: there is no texture file no.png"},
-        {"nodes:\n  - mesh: {model: no.obj}", "s.yaml:2:19: there is no model file no.obj"},
+        {"materials:\n  a: {diffuse_texture: no.png}", "s.yaml:2:24: can't read no.png: no such file"},
+        {"nodes:\n  - mesh: {model: no.obj}", "s.yaml:2:19: can't read no.obj: no such file"},
         {"nodes:\n  - mesh: {terrain: {}}",
          "s.yaml:2:21: this stands on the terrain, and the scene has no \"terrain\""},
         {"nodes:\n  - light: {lamp: {}}",
@@ -132,8 +137,26 @@ TEST_CASE("a mistake in a scene file is one message with its place") {
         {"nodes:\n  - animate: {orbit: {}}", "s.yaml:2:22: orbit needs \"degrees_per_second\""},
         {"nodes: [&a {light: {spot: {shadow: true}}}, *a, *a, *a, *a]",
          "s.yaml:1:20: at most 4 lights of a scene cast shadows"},
-        {"include: missing.yaml", "s.yaml:1:10: there is no scene file missing.yaml"},
-        {"nodes: [", "s.yaml:1:1: end of sequence flow not found"},
+        {"include: missing.yaml", "s.yaml:1:10: can't read missing.yaml: no such file"},
+        {"nodes: [", "s.yaml:1:8: this is not YAML: the \"[\" that opens here is never closed"},
+        {"nodes:\n  - {name: \"a}\n  - {name: \"b\"}",
+         "s.yaml:2:12: this is not YAML: the quote that opens here is not closed on its line"},
+        {"nodes:\n\t- {name: a}", "s.yaml:2:1: this is not YAML: a tab indents this line; YAML wants spaces"},
+        {"nodes:\n  - mesh {box: {}}", "s.yaml:2:5: this is not YAML: a colon is missing behind \"mesh\""},
+        {"nodes:\n  - mesh: {box: {size 1}}",
+         "s.yaml:2:18: unknown key \"size 1\" in box; a colon is missing behind \"size\""},
+        {"camera:\n  near 1",
+         "s.yaml:2:3: expected a map, found \"near 1\"; a colon is missing behind \"near\""},
+        {"nodes:\n  - light: {spot: {shadow: yes}}",
+         "s.yaml:2:28: expected true or false, found \"yes\"; write true"},
+        {"camera:\n  near: 0,5",
+         "s.yaml:2:9: expected a number, found \"0,5\"; decimals are written with a point: 0.5"},
+        {"camera: {near: 0,5}",
+         "s.yaml:1:16: expected a number, found \"0,5\"; decimals are written with a point: 0.5"},
+        {"camera: {position: [0,5, 1, 2]}",
+         "s.yaml:1:20: expected [x, y, z], found a list; decimals are written with a point: 0.5"},
+        {"camera: {near: '1'}", "s.yaml:1:16: expected a number, found \"1\""},
+        {"camera: {near: \x04}", "s.yaml:1:16: expected plain text in UTF-8, found the byte 0x04"},
     };
     for (const Row& row : rows) {
         INFO(row.yaml);
@@ -141,11 +164,130 @@ TEST_CASE("a mistake in a scene file is one message with its place") {
     }
 }
 
+TEST_CASE("a scene's words and numbers are those of YAML's core schema") {
+    for (const char* word : {"true", "True", "TRUE"}) {
+        const Scene scene =
+            parse_scene(std::string("nodes: [{light: {spot: {shadow: ") + word + "}}}]", "s.yaml");
+        CHECK(scene.lights.at(0).casts_shadow);
+    }
+    for (const auto& [text, value] : std::vector<std::pair<std::string, double>>{
+             {".5", 0.5}, {"1e-1", 0.1}, {"0x10", 16}, {"0o17", 15}, {"017", 17}})
+        CHECK(parse_scene("camera: {near: " + text + "}", "s.yaml").camera.near_plane == value);
+}
+
 TEST_CASE("an unknown scene name gives the nearest, a missing file its name") {
     CHECK_THROWS_WITH(open_scene("cornel", scenes), Catch::Contains("did you mean \"cornell\"?"));
-    CHECK_THROWS_WITH(open_scene("no/such.yaml", scenes), "no/such.yaml: there is no such file");
+    CHECK_THROWS_WITH(open_scene("no/such.yaml", scenes), "no/such.yaml: no such file");
     CHECK_THROWS_WITH(open_scene(POSTFX_SOURCE_DIRECTORY "/CMakeLists.txt", scenes),
                       Catch::Contains("expected a scene"));
+}
+
+namespace {
+
+void put(const std::filesystem::path& file, const std::string& text) {
+    std::ofstream(file, std::ios::binary) << text;
+}
+
+std::string error_of_scene(const std::filesystem::path& file) {
+    try {
+        open_scene(file.string(), scenes);
+    } catch (const postfx::Error& error) {
+        return error.message();
+    }
+    return "no error";
+}
+
+constexpr const char* triangle_obj = "# a triangle\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+constexpr const char* triangle_ply =
+    "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+    "property float z\nelement face 1\nproperty list uchar int vertex_indices\n"
+    "end_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
+constexpr const char* triangle_stl = "solid t\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\n"
+                                     "vertex 0 1 0\nendloop\nendfacet\nendsolid t\n";
+/// The corners are 36 bytes; `uri` says where they are, or nothing of those that come along.
+std::string triangle_gltf(const std::string& uri) {
+    return R"({"buffers": [{)" + uri
+           + R"("byteLength": 36}], "bufferViews": [{"buffer": 0, "byteLength": 36}],)"
+             R"( "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3",)"
+             R"( "min": [0, 0, 0], "max": [1, 1, 0]}], "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],)"
+             R"( "nodes": [{"mesh": 0}], "scenes": [{"nodes": [0]}], "scene": 0, "asset": {"version": "2.0"}})";
+}
+const std::string triangle_in_gltf = triangle_gltf(R"("uri": "data:application/octet-stream;base64,)"
+                                                   R"(AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA", )");
+
+std::string little_endian(std::uint32_t x) {
+    std::string bytes;
+    for (int shift = 0; shift < 32; shift += 8)
+        bytes += static_cast<char>(x >> shift);
+    return bytes;
+}
+
+/// Its JSON and its corners in one file.
+std::string triangle_in_glb() {
+    std::string json = triangle_gltf("");
+    json.resize((json.size() + 3) / 4 * 4, ' ');
+    constexpr float corners[] = {0, 0, 0, 1, 0, 0, 0, 1, 0};
+    const std::string bytes(reinterpret_cast<const char*>(corners), sizeof(corners));
+    const auto chunk = [](const std::string& type, const std::string& content) {
+        return little_endian(static_cast<std::uint32_t>(content.size())) + type + content;
+    };
+    const std::string chunks = chunk("JSON", json) + chunk(std::string("BIN\0", 4), bytes);
+    return "glTF" + little_endian(2) + little_endian(static_cast<std::uint32_t>(12 + chunks.size())) + chunks;
+}
+
+} // namespace
+
+TEST_CASE("whether a file is a scene or a model, and of which format, its content says") {
+    const postfx::testing::TemporaryDirectory folder;
+    const std::string yaml = "nodes:\n  - {mesh: {box: {}}}\n";
+    const std::vector<std::pair<std::string, std::string>> models = {{"obj", triangle_obj},
+                                                                     {"ply", triangle_ply},
+                                                                     {"stl", triangle_stl},
+                                                                     {"gltf", triangle_in_gltf},
+                                                                     {"glb", triangle_in_glb()}};
+    for (const auto& [format, content] : models) {
+        for (const std::string& ending : {"." + format, std::string(".dat"), std::string(),
+                                          std::string(".obj"), std::string(".yaml"), std::string(".glb")}) {
+            const std::filesystem::path file = folder / ("model" + ending);
+            INFO(format << " as " << file.filename());
+            put(file, content);
+            CHECK(open_scene(file.string(), scenes).facts().triangles == 1);
+        }
+    }
+    for (const char* name : {"scene.yaml", "scene.txt", "scene", "scene.obj2"}) {
+        INFO(name);
+        put(folder / name, yaml);
+        CHECK(open_scene((folder / name).string(), scenes).facts().triangles == 12);
+    }
+    put(folder / "scene.json", R"({"nodes": [{"mesh": {"box": {}}}]})");
+    CHECK(open_scene((folder / "scene.json").string(), scenes).facts().triangles == 12);
+
+    put(folder / "a.yaml", "\x89PNG\r\n\x1a\n");
+    CHECK_THAT(error_of_scene(folder / "a.yaml"), Catch::Contains("is a PNG image, expected a scene"));
+    put(folder / "b.dat", std::string("\x01\x02\x03", 3));
+    CHECK_THAT(error_of_scene(folder / "b.dat"), Catch::StartsWith("expected a scene"));
+    put(folder / "c.yaml", "");
+    CHECK_THAT(error_of_scene(folder / "c.yaml"), Catch::Contains("is empty, expected a scene"));
+    CHECK_THAT(error_of_scene(folder.path()), Catch::Contains("is a directory, expected a scene"));
+    CHECK_THAT(error_of_scene(folder / "scene.yam"), Catch::Contains("did you mean \"scene.yaml\"?"));
+}
+
+TEST_CASE("scenes and models come through pipes") {
+    const postfx::testing::TemporaryDirectory folder;
+    put(folder / "triangle.obj", triangle_obj);
+    const auto through_pipe = [&](const std::string& content) {
+        const std::filesystem::path pipe = folder / "pipe";
+        std::filesystem::remove(pipe);
+        REQUIRE(::mkfifo(pipe.c_str(), 0600) == 0);
+        const std::jthread writer([&] { put(pipe, content); });
+        const Scene scene = open_scene(pipe.string(), scenes);
+        CHECK(scene.content == content);
+        return scene.facts().triangles;
+    };
+    CHECK(through_pipe("nodes:\n  - {mesh: {box: {}}}\n  - {mesh: {model: triangle.obj}}\n") == 13);
+    for (const std::string& model :
+         {std::string(triangle_obj), std::string(triangle_ply), triangle_in_gltf, triangle_in_glb()})
+        CHECK(through_pipe(model) == 1);
 }
 
 TEST_CASE("closed primitives have unit normals, no hole and their measure") {
@@ -350,18 +492,22 @@ TEST_CASE("FlightHelmet opens with its textures") {
     const auto file = test_data("FlightHelmet/FlightHelmet.gltf");
     if (file.empty()) return;
     const Model model = load_model(file);
-    CHECK(model.parts.size() == 6);
+    CHECK(model.part_count() == 6);
+    CHECK(model.losses.empty());
     std::size_t blended = 0;
-    for (const ModelPart& part : model.parts) {
-        check_sane(*part.mesh);
-        const Material& material = model.materials[part.material];
-        INFO(material.name);
-        REQUIRE(material.diffuse_texture);
-        CHECK(material.diffuse_texture->srgb);
-        REQUIRE(material.normal_texture);
-        CHECK_FALSE(material.normal_texture->srgb);
-        CHECK(material.metal_roughness_texture);
-        blended += material.blended;
+    for (const Node& node : model.nodes) {
+        for (const Part& part : node.parts) {
+            check_sane(*part.mesh);
+            const Material& material = model.materials[part.material];
+            INFO(material.name);
+            REQUIRE(material.diffuse_texture);
+            CHECK(material.diffuse_texture->srgb);
+            REQUIRE(material.normal_texture);
+            CHECK_FALSE(material.normal_texture->srgb);
+            CHECK(material.metal_roughness_texture);
+            CHECK(material.occlusion_texture);
+            blended += material.blended;
+        }
     }
     CHECK(blended == 1); // the lenses
 }

@@ -78,8 +78,8 @@ TEST_CASE("a radius in pixels is a share of the height, within what the paramete
     const RadiusSpec radius{.parameter = "reach", .per_height = 2, .at_most = 0.2, .scene = "", .values = ""};
     const postfx::EffectInfo effect = effect_with_range(0.01, 0.3);
     CHECK(value_for_radius(radius, effect, 10, 200).value() == Approx(0.1));
-    CHECK_FALSE(value_for_radius(radius, effect, 0.5, 200));               // 0.005: below the range
-    CHECK_FALSE(value_for_radius(radius, effect, 35, 200));                // 0.35: above the range
+    CHECK_FALSE(value_for_radius(radius, effect, 0.5, 200));                   // 0.005: below the range
+    CHECK_FALSE(value_for_radius(radius, effect, 35, 200));                    // 0.35: above the range
     CHECK_FALSE(value_for_radius({"reach", 1, 0.2, "", ""}, effect, 50, 200)); // a quarter of the height
     CHECK_THROWS_AS(value_for_radius({"raech", 1, 1, "", ""}, effect, 1, 200), postfx::Error);
 }

@@ -21,16 +21,12 @@ inline ChainEntry entry_of(const std::string& effect) {
 class EffectMethod : public host::Method {
 public:
     EffectMethod(const std::string& effect, const std::string& level) : entry_(entry_of(effect)) {
-        const std::vector<LevelInfo>& levels = entry_.effect->levels;
-        const auto found = std::find_if(levels.begin(), levels.end(),
-                                        [&](const LevelInfo& info) { return info.id == level; });
-        REQUIRE(found != levels.end());
-        entry_.level = static_cast<int>(found - levels.begin());
+        set_level(entry_, level);
     }
 
     const ChainEntry& entry() const override { return entry_; }
     Image64 draw(const ChainEntry& entry, const host::MethodInput& input) const override {
-        Values values = {{"quality", entry.level}};
+        Values values = {{"quality", names_of_levels(*entry.effect)[static_cast<std::size_t>(entry.level)]}};
         for (std::size_t i = 0; i < entry.values.size(); ++i) {
             const ParameterInfo& parameter = entry.effect->parameters[i];
             for (std::size_t c = 0; c < std::size_t(parameter.components()); ++c)

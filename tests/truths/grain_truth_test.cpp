@@ -206,6 +206,21 @@ TEST_CASE("black, white and what is beyond pass, and nothing leaves 0..1") {
     }
 }
 
+TEST_CASE("a truth's mean stays near black and white, though film's noise is skewed there") {
+    constexpr int size = 160;
+    for (const double u : {0.002, 0.005, 0.998}) {
+        const Values values = {{"amount", 0.1}, {"size", 1.0 / size}, {"color", 0.3}};
+        double mean = 0;
+        const Image64 result = grained(Image64(size, size, 3, u), values, 16).picture;
+        for (const double value : result.values)
+            mean += value / static_cast<double>(result.values.size());
+        // 5 standard errors: channels have 70 % in common, neighbours a covariance of 3 pixels.
+        const double independent = size * size / 3.0;
+        CAPTURE(u);
+        CHECK(mean == Approx(u).margin(5 * 0.1 * std::sqrt(u * (1 - u) / independent)));
+    }
+}
+
 TEST_CASE("own error is what more places in the pixels change") {
     const Image64 grey(48, 48, 3, 0.5);
     const Values values = {{"amount", 0.1}, {"size", 0.02}};

@@ -25,12 +25,11 @@ using Surface = std::function<Seen(const glm::dvec3& line)>;
 
 HeightField field(const Surface& surface, int width, int height, const Camera& camera, double radius,
                   double falloff) {
-    const double pixel = (camera.orthographic ? camera.vertical_extent : 2 * camera.tan_half_fov()) / height;
     Image depth(width, height, 1), normal(width, height, 3);
     for (int y = 0; y < height; ++y) {
         for (int x = 0; x < width; ++x) {
-            const Seen seen =
-                surface({(x + 0.5 - 0.5 * width) * pixel, (y + 0.5 - 0.5 * height) * pixel, -1});
+            const auto [right, up] = camera.view_plane(x + 0.5, y + 0.5, width, height);
+            const Seen seen = surface({right, up, -1});
             depth.at(x, y, 0) = static_cast<float>(camera.depth_at(seen.z));
             for (int c = 0; c < 3; ++c)
                 normal.at(x, y, c) = static_cast<float>(seen.normal[c]);
@@ -78,6 +77,17 @@ TEST_CASE("no part of a plane is occluded, however it is tilted") {
             }
         }
     }
+}
+
+TEST_CASE("a plane is one with a shifted lens too") {
+    // At 60 degrees and seen from the side: with the axis in the middle it would be bent, and have corners.
+    const double tilt = pi / 3;
+    Camera camera = perspective;
+    camera.principal_point = {1.4, 0.7};
+    const Surface tilted = plane(5, {0.6 * std::sin(tilt), 0.8 * std::sin(tilt), std::cos(tilt)});
+    const HeightField seen = field(tilted, 48, 40, camera, 1.5, 0.6);
+    for (const int x : {0, 13, 24, 47})
+        CHECK(visibility(seen, x, 20, 64) == Approx(1).margin(1e-7)); // as above
 }
 
 TEST_CASE("floor and wall hide each other by the closed form") {

@@ -125,7 +125,7 @@ TEST_CASE("a sphere's rim") {
 TEST_CASE("tone curves") {
     // The curves' points are in the truth's test; here it is enough that the effect has them.
     const Draw run = [](const ChainEntry& entry, const MethodInput& input) {
-        std::map<std::string, double> values;
+        postfx::testing::Values values;
         for (std::size_t i = 0; i < entry.values.size(); ++i)
             values[entry.effect->parameters[i].id] = entry.values[i][0];
         return postfx::convert<double>(postfx::testing::three_channels(

@@ -20,7 +20,7 @@ struct Camera {
     /// its middle, in half widths and half heights; finite. Not 0 with a shifted lens, in a part of a larger picture,
     /// in one eye's view, and with jitter. Beyond -1..1 it is outside of the picture.
     std::array<double, 2> principal_point = {0, 0};
-    double near_plane = 0.1;       ///< metres
+    double near_plane = 0.1;                                    ///< metres
     double far_plane = std::numeric_limits<double>::infinity(); ///< metres
     double depth_scale = 10.0; ///< see above; default is reversed-Z with infinite far plane, d = near / z
     double depth_offset = 0.0;

@@ -38,6 +38,12 @@ private:
     std::string message_;
 };
 
+/// An effect refuses its values: they are no mistake of the effect's, so others would do.
+class Refusal : public Error {
+public:
+    using Error::Error;
+};
+
 /// `; did you mean "x"?` for the candidate nearest to `word` (by edit distance), or "" when none is near.
 std::string did_you_mean(std::string_view word, const std::vector<std::string>& candidates);
 

@@ -165,7 +165,7 @@ public:
     Planner(Planner&&) noexcept;
     Planner& operator=(Planner&&) noexcept;
 
-    /// Throws Error naming the effect when it refuses its values or its plan is wrong.
+    /// Naming the effect, throws Refusal when it refuses its values, and Error when its plan is wrong.
     Plan plan(const Chain& chain, const Facts& facts);
 
 private:

@@ -5,9 +5,9 @@
  * these structs in.
  *
  * Rules that hold for every struct here:
- *  - the first member is struct_size = sizeof(the struct) as its writer knew it. Fields are only ever
- * appended. A reader that finds a smaller size takes zero for what is missing; arrays carry their own stride
- * for the same reason.
+ *  - the first member is struct_size = sizeof(the struct) as its writer knew it. Fields are only ever appended. A
+ *    reader that finds a smaller size takes zero for what is missing; arrays carry their own stride for the same
+ *    reason.
  *  - only fixed-width integers, doubles and pointers; strings are UTF-8, static, zero-terminated.
  *  - kinds and formats are words. A host that does not know a word refuses that effect and names the word.
  *  - no exception crosses; the host copies what it keeps.
@@ -28,16 +28,14 @@ extern "C" {
 
 /* Parameter flags. */
 #define POSTFX_PARAMETER_CONSTANT 1u     /* compiled into the shader; changing it compiles another program */
-#define POSTFX_PARAMETER_HAS_IDENTITY 2u /* `identity` is the value at which the whole effect does nothing   \
-                                          */
+#define POSTFX_PARAMETER_HAS_IDENTITY 2u /* at `identity` the whole effect does nothing */
 #define POSTFX_PARAMETER_LOGARITHMIC 4u  /* sliders should move in ratios */
 
 typedef struct postfx_parameter {
     uint32_t struct_size;
     uint32_t flags;
-    const char* id; /* [a-z][a-z0-9_]*, unique in the effect; not enabled, quality, name */
-    const char*
-        kind; /* "float", "int", "bool", "choice" (value = index), "color" (scene-linear RGB, 3 values) */
+    const char* id;   /* [a-z][a-z0-9_]*, unique in the effect; not enabled, quality, name */
+    const char* kind; /* "float", "int", "bool", "choice" (an index), "color" (scene-linear RGB, 3 values) */
     const char* unit; /* "m", "mm", "px", "deg", "stops", "height" (fraction of picture height), ... or "" */
     const char* help; /* one line */
     double default_value[4];
@@ -81,9 +79,12 @@ typedef struct postfx_camera {
 typedef struct postfx_scene {
     uint32_t struct_size;
     uint32_t reserved;
-    double nearest, farthest; /* metres along the view axis, of any surface; not known: 0 and infinity */
-    double reach;             /* metres from the eye to the farthest surface along its ray; infinity: not known */
-    double lowest, highest;   /* metres in the world, of any surface and the eye; not known: -infinity and infinity */
+    /* Metres along the view axis, of any surface; not known: 0 and infinity. */
+    double nearest, farthest;
+    /* Metres from the eye to the farthest surface along its ray; not known: infinity. */
+    double reach;
+    /* Metres in the world, of any surface and the eye; not known: -infinity and infinity. */
+    double lowest, highest;
     /* Attachments that are zero in every pixel (no emitter, no ambient light); "depth": nothing but sky. */
     const char* const* empty;
     uint32_t empty_count;
@@ -139,8 +140,7 @@ typedef struct postfx_number {
 typedef struct postfx_pass {
     uint32_t struct_size;
     uint32_t reserved;
-    const char*
-        kind; /* "fragment", or "compose": the effect's function of its own pixel (exactly one, last) */
+    const char* kind;   /* "fragment", or "compose": the function of its own pixel (exactly one, last) */
     const char* name;   /* unique within the effect's plan, for reports; may repeat the source's stem */
     const char* source; /* a postfx_source of this module */
     const postfx_input* inputs;
@@ -202,6 +202,8 @@ typedef struct postfx_builder {
     void (*decide)(void* context, const postfx_decision* decision);
     /* Size of an image of this plan, pixels. */
     void (*size)(void* context, postfx_image image, uint32_t* width, uint32_t* height);
+    /* The effect found a mistake of its own, which no other values mend; the chain is refused with this message. */
+    void (*fail)(void* context, const char* message);
 } postfx_builder;
 
 typedef struct postfx_effect {
@@ -213,13 +215,12 @@ typedef struct postfx_effect {
     const char* stage; /* "scene" (works on scene-linear light), "scene_to_display" (a tone map), "display" */
     const postfx_parameter* parameters;
     uint32_t parameter_count, parameter_stride;
-    const char* const*
-        reads; /* attachments besides the chain's colour that it may read: "depth", "normal", ... */
+    const char* const* reads; /* attachments that it may read besides the colour: "depth", "normal", ... */
     uint32_t read_count;
     uint32_t default_level; /* index into levels */
     const postfx_level* levels;
     uint32_t level_count, level_stride;
-    /* Pure: same request, same calls. Returns 0, or non-zero after refuse(). */
+    /* Pure: same request, same calls. Returns 0, or non-zero after refuse() or fail(). */
     int32_t (*plan)(const postfx_request* request, const postfx_builder* builder);
     /* Pure. Null: not known; then no effect in front of this one is skipped for changing less than a code. */
     void (*gain)(const postfx_request* request, postfx_gain* gain);

@@ -134,7 +134,7 @@ class Request {
 public:
     explicit Request(const postfx_request& request) : request_(request) {}
 
-    /// A parameter's value. Asking for one that was not declared refuses the chain (a bug in the effect).
+    /// A parameter's value. Asking for one that was not declared is a mistake of the effect's.
     double number(const char* id) const { return values(id)[0]; }
     int integer(const char* id) const { return static_cast<int>(std::lround(values(id)[0])); }
     bool toggle(const char* id) const { return values(id)[0] != 0; }
@@ -199,6 +199,12 @@ struct PlanImage {
     PlanImage output(std::uint32_t n) const { return {handle + n}; }
 };
 
+/// A mistake of the effect's own. Hosts that are older than fail() are told as of values.
+inline void report_mistake(const postfx_builder& builder, const char* message) {
+    const bool host_knows = builder.struct_size > offsetof(postfx_builder, fail);
+    (host_knows ? builder.fail : builder.refuse)(builder.context, message);
+}
+
 /// What passes and decisions have in common: images that are read, and numbers. `Self` is what calls return.
 template<class Self>
 class Declaration {
@@ -241,7 +247,7 @@ protected:
     ~Declaration() = default;
 
     Self& overflow(const char* what) {
-        builder_.refuse(builder_.context, (std::string(name_) + " declares too many " + what).c_str());
+        report_mistake(builder_, (std::string(name_) + " declares too many " + what).c_str());
         return self();
     }
     /// Put what was declared into `abi`, a postfx_pass or postfx_decision.
@@ -526,9 +532,9 @@ std::int32_t plan_entry(const postfx_request* request, const postfx_builder* bui
         plan(Request(*request), out);
         return 0;
     } catch (const std::exception& error) {
-        builder->refuse(builder->context, error.what());
+        report_mistake(*builder, error.what());
     } catch (...) {
-        builder->refuse(builder->context, "plan() threw something that is no std::exception");
+        report_mistake(*builder, "plan() threw something that is no std::exception");
     }
     return 1;
 }

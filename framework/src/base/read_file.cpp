@@ -35,11 +35,11 @@ bool is_standard_input(const fs::path& file) {
     return file == "-";
 }
 
-/// The name of a descriptor of this process, which is in no folder that the user thinks of.
+/// The name of a process's descriptor, which is in no folder that the user thinks of: /dev/fd/3, /proc/self/fd/3.
 bool names_descriptor(const fs::path& file) {
     const std::string folder = file.parent_path().string();
     return is_standard_input(file) || file == "/dev/stdin" || folder == "/dev/fd"
-           || folder == "/proc/self/fd";
+           || (folder.starts_with("/proc/") && folder.ends_with("/fd"));
 }
 
 /// `; did you mean "default.yaml"?` for a neighbour of the missing file.
@@ -60,7 +60,7 @@ std::string nearest_file(const fs::path& missing) {
         fail(file,
              fmt::format("is a link to {}, which is not there", fs::read_symlink(file, ignored).string()));
     }
-    if (code == ENOENT) fail(file, "no such file" + nearest_file(file));
+    if (code == ENOENT || code == ENOTDIR) fail(file, "no such file" + nearest_file(file));
     fail_reading(file, code);
 }
 
@@ -123,15 +123,17 @@ std::string read_all(const InputDescriptor& input, const fs::path& file, std::si
                      std::size_t max_bytes) {
     std::string bytes;
     bytes.reserve(std::min(likely_bytes, max_bytes) + 1);
-    while (bytes.size() < max_bytes) {
-        if (!input.append(bytes, std::min(chunk_bytes, max_bytes - bytes.size()), file)) break;
+    while (bytes.size() < max_bytes
+           && input.append(bytes, std::min(chunk_bytes, max_bytes - bytes.size()), file)) {
     }
     return bytes;
 }
 
 std::string size_text(std::size_t bytes) {
-    constexpr std::size_t mebibyte = std::size_t{1} << 20;
-    return bytes < mebibyte ? fmt::format("{} bytes", bytes) : fmt::format("{} MiB", bytes / mebibyte);
+    constexpr std::size_t kibibyte = 1024, mebibyte = kibibyte * 1024;
+    if (bytes < kibibyte) return fmt::format("{} bytes", bytes);
+    return bytes < 10 * mebibyte ? fmt::format("{} KiB", bytes / kibibyte)
+                                 : fmt::format("{} MiB", bytes / mebibyte);
 }
 
 } // namespace

@@ -2,7 +2,7 @@
 
 #include <postfx/error.hpp>
 
-#include "chain/text_file.hpp"
+#include "base/read_file.hpp"
 #include "chain/yaml_document.hpp"
 
 #include <fmt/format.h>
@@ -21,7 +21,7 @@ constexpr std::size_t max_file_bytes = std::size_t{1024} * 1024;
 /// Reads objects of a file strictly: every key is known and there, every value of its type.
 class CurvesReader {
 public:
-    explicit CurvesReader(const std::filesystem::path& file) : place_{.file = file.string()} {}
+    explicit CurvesReader(const std::string& origin) : place_{.file = origin} {}
 
     Curves read(const std::string& text) const {
         Json root;
@@ -129,7 +129,7 @@ const LevelCurve* Curves::find(const std::string& effect, const std::string& lev
 }
 
 Curves read_curves(const std::filesystem::path& file) {
-    return CurvesReader(file).read(read_text_file(file, max_file_bytes));
+    return CurvesReader(input_name(file)).read(read_file(file, max_file_bytes, "curves of what levels cost"));
 }
 
 std::string curves_json(const Curves& curves) {

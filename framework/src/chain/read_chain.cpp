@@ -1,12 +1,14 @@
 #include <postfx/chain.hpp>
 
+#include "base/read_file.hpp"
+#include "base/yaml_scalars.hpp"
 #include "chain/read_value.hpp"
-#include "chain/text_file.hpp"
 #include "chain/yaml_document.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace postfx {
@@ -17,14 +19,26 @@ using Kind = YamlNode::Kind;
 
 constexpr std::size_t max_include_depth = 16;
 
-[[noreturn]] void refuse(const YamlNode& node, std::string_view subject, std::string_view expected) {
-    throw Error(node.place, fmt::format("{}: expected {}, found {}", subject, expected, node.found()));
+const std::vector<std::string> section_keys = {"budget", "effects", "include", "overrides", "skip"};
+const std::vector<std::string> entry_keys = {"enabled", "quality", "pin", "name"};
+
+[[noreturn]] void refuse(const YamlNode& node, std::string_view subject, std::string_view expected,
+                         const std::string& hint = "") {
+    throw Error(node.place,
+                fmt::format("{}: expected {}, found {}{}", subject, expected, node.found(), hint));
 }
 
 /// A key with nothing behind it means the defaults, so that a list whose items are all commented out stays
 /// legal.
 void expect(const YamlNode& node, Kind kind, std::string_view subject, std::string_view expected) {
     if (!node.is(kind) && !node.is(Kind::nothing)) refuse(node, subject, expected);
+}
+
+/// A map of an effect's settings, or nothing.
+void expect_settings(const YamlNode& node, const EffectInfo& effect, const std::string& subject) {
+    if (node.is(Kind::map) || node.is(Kind::nothing)) return;
+    refuse(node, subject, "a map {parameter: value}",
+           colon_hint(node.text, known_settings(effect, entry_keys)));
 }
 
 bool is_name(std::string_view name) {
@@ -64,7 +78,7 @@ void read_setting(const YamlMember& setting, ChainEntry& entry) {
     } else if (const auto index = effect.find_parameter(key)) {
         entry.values[*index] = read_value(setting.value, effect, effect.parameters[*index]);
     } else {
-        throw Error(setting.key.place, unknown_parameter(effect, key, {"enabled", "quality", "pin", "name"}));
+        throw Error(setting.key.place, unknown_parameter(effect, key, entry_keys));
     }
 }
 
@@ -134,7 +148,7 @@ void read_item(const YamlNode& item, const Catalog& catalog, Chain& chain) {
     const auto& [id, settings] = item.members[0];
     ChainEntry entry = std::move(add_effect(id, catalog, chain));
     chain.entries.pop_back(); // its name is free again for its own `name:`
-    expect(settings, Kind::map, entry.effect->id, "a map {parameter: value}");
+    expect_settings(settings, *entry.effect, entry.effect->id);
     refuse_quality_beside_pin(settings, *entry.effect);
     for (const YamlMember& setting : settings.members) {
         if (setting.key.text == "name") {
@@ -156,7 +170,7 @@ void read_override(const YamlMember& change, Chain& chain) {
                     fmt::format("the included chain has no entry {}{}", quote(change.key.text),
                                 names.empty() ? "; it is empty" : nearest_or_all(change.key.text, names)));
     }
-    expect(change.value, Kind::map, "override of " + entry->name, "a map {parameter: value}");
+    expect_settings(change.value, *entry->effect, "override of " + entry->name);
     refuse_quality_beside_pin(change.value, *entry->effect);
     for (const YamlMember& setting : change.value.members) {
         if (setting.key.text == "name") {
@@ -174,13 +188,14 @@ Skip read_skip(const YamlNode& node) {
 double read_limit(const YamlNode& node, const std::string& subject) {
     const std::string expected = "a number above 0";
     const double limit = read_number(node, subject, expected);
-    if (!(limit > 0)) refuse(node, subject, expected);
+    if (!(limit > 0) || std::isinf(limit)) refuse(node, subject, expected);
     return limit;
 }
 
 Budget read_budget(const YamlNode& node) {
     constexpr const char* expected = "{ms: MILLISECONDS} or {error: SHARE}";
-    if (!node.is(Kind::map) || node.members.empty()) refuse(node, "\"budget\"", expected);
+    if (!node.is(Kind::map) || node.members.empty())
+        refuse(node, "\"budget\"", expected, colon_hint(node.text, {"ms", "error"}));
     if (node.members.size() > 1) {
         throw Error(node.members[1].key.place,
                     fmt::format("\"budget\" has two keys; expected one of them: {}", expected));
@@ -203,10 +218,12 @@ struct Sections {
 };
 
 Sections split(const YamlNode& root) {
-    const std::vector<std::string> known = {"budget", "effects", "include", "overrides", "skip"};
     if (root.is(Kind::nothing))
         throw Error(root.place, "the chain is empty; expected \"effects\" or \"include\"");
-    if (!root.is(Kind::map)) refuse(root, "a chain", "\"effects:\" and a list, or \"include:\" and a file");
+    if (!root.is(Kind::map)) {
+        refuse(root, "a chain", "\"effects:\" and a list, or \"include:\" and a file",
+               colon_hint(root.text, section_keys));
+    }
     Sections sections;
     const YamlNode* overrides_key = nullptr;
     for (const auto& [key, value] : root.members) {
@@ -223,7 +240,7 @@ Sections split(const YamlNode& root) {
             sections.budget = &value;
         } else {
             throw Error(key.place, fmt::format("a chain has no key {}{}", quote(key.text),
-                                               nearest_or_all(key.text, known)));
+                                               nearest_or_all(key.text, section_keys)));
         }
     }
     if (overrides_key != nullptr && sections.include == nullptr) {
@@ -286,7 +303,7 @@ private:
         }
         std::string yaml;
         try {
-            yaml = read_text_file(file, YamlLimits::bytes);
+            yaml = read_file(file, YamlLimits::bytes, "a chain");
         } catch (const Error& error) {
             throw Error(include.place,
                         fmt::format("can't include {}: {}", quote(include.text), error.message()));
@@ -296,7 +313,7 @@ private:
 
     /// Beside the including file, else in the include directories; where it is nowhere, beside the file.
     fs::path find_included(const std::string& name) const {
-        fs::path beside = (open_.back().shown.parent_path() / name).lexically_normal();
+        fs::path beside = (folder_of(open_.back().shown) / name).lexically_normal();
         if (fs::exists(beside)) return beside;
         for (const fs::path& directory : include_directories_) {
             if (fs::exists(directory / name)) return directory / name;
@@ -325,7 +342,8 @@ private:
 
 Chain read_chain(const fs::path& file, const Catalog& catalog,
                  const std::vector<fs::path>& include_directories) {
-    return parse_chain(read_text_file(file, YamlLimits::bytes), file, catalog, include_directories);
+    return parse_chain(read_file(file, YamlLimits::bytes, "a chain"), input_name(file), catalog,
+                       include_directories);
 }
 
 Chain parse_chain(const std::string& yaml, const fs::path& origin, const Catalog& catalog,

@@ -1,17 +1,21 @@
 #include "chain/read_value.hpp"
 
+#include "base/yaml_scalars.hpp"
+
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
+#include <optional>
 
 namespace postfx {
 namespace {
 
-[[noreturn]] void refuse(const YamlNode& node, std::string_view subject, std::string_view expected) {
-    throw Error(node.place, fmt::format("{}: expected {}, found {}", subject, expected, node.found()));
+[[noreturn]] void refuse(const YamlNode& node, std::string_view subject, std::string_view expected,
+                         const std::string& hint = "") {
+    throw Error(node.place,
+                fmt::format("{}: expected {}, found {}{}", subject, expected, node.found(), hint));
 }
 
 double read_number_in_range(const YamlNode& node, std::string_view subject, const ParameterInfo& parameter) {
@@ -47,8 +51,9 @@ Value read_color(const YamlNode& node, const std::string& subject, const Paramet
         return {grey, grey, grey, 0};
     }
     if (node.items.size() != 3) {
-        throw Error(node.place, fmt::format("{}: expected {}, found {} of them", subject,
-                                            expected_value(parameter), node.items.size()));
+        throw Error(node.place,
+                    fmt::format("{}: expected {}, found {} of them{}", subject, expected_value(parameter),
+                                node.items.size(), decimal_comma_hint(node.items)));
     }
     constexpr const char* channels[] = {"red", "green", "blue"};
     Value color{};
@@ -60,23 +65,15 @@ Value read_color(const YamlNode& node, const std::string& subject, const Paramet
 
 } // namespace
 
-/// The node's decimal number (YAML 1.2 core schema, without .inf and .nan, which no parameter can take).
 double read_number(const YamlNode& node, std::string_view subject, std::string_view expected) {
-    std::string_view digits = node.text;
-    if (digits.starts_with('+')) digits.remove_prefix(1);
-    const bool decimal = node.is(YamlNode::Kind::scalar) && !node.quoted && !digits.starts_with("+")
-                         && digits.find_first_not_of("0123456789+-.eE") == std::string_view::npos
-                         && !node.text.starts_with("+-");
-    double value = 0;
-    const auto [end, failure] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
-    if (!decimal || end != digits.data() + digits.size() || failure == std::errc::invalid_argument) {
-        refuse(node, subject, expected);
-    }
-    if (failure == std::errc::result_out_of_range) {
+    const bool plain = node.is(YamlNode::Kind::scalar) && !node.quoted;
+    const std::optional<double> value = plain ? core_number(node.text) : std::nullopt;
+    if (!value || std::isnan(*value)) refuse(node, subject, expected, plain ? number_hint(node.text) : "");
+    if (std::isinf(*value) && node.text.find_first_of("iI") == std::string::npos) {
         throw Error(node.place, fmt::format("{}: {} does not fit a 64-bit float; expected {}", subject,
                                             quote(node.text), expected));
     }
-    return value == 0 ? 0.0 : value; // no negative zero: 1/x and sign tests in shaders see it
+    return *value == 0 ? 0.0 : *value; // no negative zero: 1/x and sign tests in shaders see it
 }
 
 Value read_value(const YamlNode& node, const EffectInfo& effect, const ParameterInfo& parameter) {
@@ -98,9 +95,8 @@ Value read_value(const YamlNode& node, const EffectInfo& effect, const Parameter
 
 bool read_toggle(const YamlNode& node, std::string_view subject) {
     const bool plain = node.is(YamlNode::Kind::scalar) && !node.quoted;
-    if (plain && node.text == "true") return true;
-    if (plain && node.text == "false") return false;
-    refuse(node, subject, "true or false");
+    if (const std::optional<bool> value = plain ? core_bool(node.text) : std::nullopt) return *value;
+    refuse(node, subject, "true or false", plain ? bool_hint(node.text) : "");
 }
 
 std::string expected_value(const ParameterInfo& parameter) {
@@ -129,16 +125,22 @@ std::string join(const std::vector<std::string>& words) {
 }
 
 std::string nearest_or_all(std::string_view word, const std::vector<std::string>& known) {
+    if (std::string colon = colon_hint(word, known); !colon.empty()) return colon;
     const std::string nearest = did_you_mean(word, known);
     return nearest.empty() ? "; expected one of " + join(known) : nearest;
 }
 
-std::string unknown_parameter(const EffectInfo& effect, std::string_view id,
-                              const std::vector<std::string>& reserved) {
+std::vector<std::string> known_settings(const EffectInfo& effect, const std::vector<std::string>& reserved) {
     std::vector<std::string> known;
     for (const ParameterInfo& parameter : effect.parameters)
         known.push_back(parameter.id);
     known.insert(known.end(), reserved.begin(), reserved.end());
+    return known;
+}
+
+std::string unknown_parameter(const EffectInfo& effect, std::string_view id,
+                              const std::vector<std::string>& reserved) {
+    const std::vector<std::string> known = known_settings(effect, reserved);
     return fmt::format("{} has no parameter {}{}", effect.id, quote(id), nearest_or_all(id, known));
 }
 

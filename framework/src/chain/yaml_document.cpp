@@ -1,5 +1,8 @@
 #include "chain/yaml_document.hpp"
 
+#include "base/yaml_scalars.hpp"
+#include "base/yaml_text.hpp"
+
 #include <fmt/format.h>
 #include <yaml-cpp/eventhandler.h>
 #include <yaml-cpp/exceptions.h>
@@ -14,119 +17,39 @@
 namespace postfx {
 namespace {
 
-bool continues_character(char byte) {
-    return (static_cast<unsigned char>(byte) & 0xC0) == 0x80;
+/// Where yaml-cpp says that something is; it counts from 0, and the end of the text is its "unknown".
+std::size_t offset_of(const YAML::Mark& mark) {
+    return mark.is_null() ? std::string_view::npos : static_cast<std::size_t>(mark.pos);
 }
 
-/// Length in bytes of the UTF-8 character that `text` starts with, 0 when there is none: cut short, overlong,
-/// a surrogate or above U+10FFFF (RFC 3629).
-std::size_t utf8_length(std::string_view text) {
-    const auto lead = static_cast<unsigned char>(text[0]);
-    if (lead < 0x80) return 1;
-    const std::size_t length = lead >= 0xC2 && lead < 0xE0   ? 2
-                               : lead >= 0xE0 && lead < 0xF0 ? 3
-                               : lead >= 0xF0 && lead < 0xF5 ? 4
-                                                             : 0;
-    if (length == 0 || text.size() < length) return 0;
-    if (!std::all_of(text.begin() + 1, text.begin() + static_cast<std::ptrdiff_t>(length),
-                     continues_character)) {
-        return 0;
-    }
-    const auto second = static_cast<unsigned char>(text[1]);
-    const bool overlong = (lead == 0xE0 && second < 0xA0) || (lead == 0xF0 && second < 0x90);
-    const bool not_a_character = (lead == 0xED && second >= 0xA0) || (lead == 0xF4 && second >= 0x90);
-    return overlong || not_a_character ? 0 : length;
+/// Does `after` stand behind `before` with just a comma between them?
+bool stand_around_comma(const YamlNode& before, const YamlNode& after) {
+    return before.is(YamlNode::Kind::scalar) && after.is(YamlNode::Kind::scalar) && !before.quoted
+           && !after.quoted && before.place.line == after.place.line
+           && before.place.column + static_cast<int>(before.text.size()) + 1 == after.place.column;
 }
-
-/// The text of one file and the places in it. Lines and columns count from 1, columns in characters, not
-/// bytes.
-class Source {
-public:
-    Source(std::string_view text, const std::string& origin) : text_(text), origin_(origin) {}
-
-    /// Cheap when it is asked for places in their order in the text: it counts on from the last one.
-    Place place_of(std::size_t offset) const {
-        offset = std::min(offset, text_.size());
-        if (offset < counted_.offset) counted_ = {};
-        for (; counted_.offset < offset; ++counted_.offset) {
-            if (text_[counted_.offset] == '\n') {
-                ++counted_.line;
-                counted_.column = 1;
-            } else if (!continues_character(text_[counted_.offset])) {
-                ++counted_.column;
-            }
-        }
-        return {.file = origin_, .line = counted_.line, .column = counted_.column};
-    }
-
-    Place place_of(const YAML::Mark& mark) const {
-        if (mark.is_null()) return {.file = origin_};
-        return place_of(static_cast<std::size_t>(mark.pos));
-    }
-
-    /// Whether the line of that place is indented with a tab somewhere.
-    bool has_tab_in_indentation(const YAML::Mark& mark) const {
-        const std::size_t offset =
-            mark.is_null() ? 0 : std::min(static_cast<std::size_t>(mark.pos), text_.size());
-        const std::size_t line_start = text_.substr(0, offset).rfind('\n') + 1; // npos + 1 is 0
-        const std::string_view line = text_.substr(line_start);
-        return line.substr(0, line.find_first_not_of(" \t")).find('\t') != std::string_view::npos;
-    }
-
-    /// Throws for what yaml-cpp should not see: it takes byte 4 for the end of the file, and other encodings
-    /// by guess.
-    void check_characters() const {
-        for (std::size_t offset = 0; offset < text_.size();) {
-            const auto byte = static_cast<unsigned char>(text_[offset]);
-            if ((byte < 0x20 && byte != '\t' && byte != '\n' && byte != '\r') || byte == 0x7F) {
-                throw Error(place_of(offset),
-                            fmt::format("expected plain text in UTF-8, found the byte 0x{:02X}", byte));
-            }
-            const std::size_t length = utf8_length(text_.substr(offset));
-            if (length == 0) {
-                throw Error(
-                    place_of(offset),
-                    fmt::format("expected text in UTF-8, found the byte 0x{:02X} out of place", byte));
-            }
-            offset += length;
-        }
-    }
-
-private:
-    struct Counted {
-        std::size_t offset = 0;
-        int line = 1;
-        int column = 1;
-    };
-
-    std::string_view text_;
-    std::string origin_;
-    mutable Counted counted_;
-};
 
 /// Builds the tree from the parser's events and stops it at the first thing that a chain file may not have.
 class TreeBuilder : public YAML::EventHandler {
 public:
-    explicit TreeBuilder(const Source& source) : source_(source) {
-        root_.place = source.place_of(std::size_t{0});
-    }
+    explicit TreeBuilder(const YamlText& source) : source_(source) { root_.place = source.place_of(0); }
 
     YamlNode take_root() { return std::move(root_); }
 
     void OnDocumentStart(const YAML::Mark& mark) override {
         if (++document_count_ > 1) {
-            throw Error(source_.place_of(mark), "a second document starts here; expected one document");
+            throw Error(place_of(mark), "a second document starts here; expected one document");
         }
     }
     void OnDocumentEnd() override {}
 
     void OnNull(const YAML::Mark& mark, YAML::anchor_t) override { add(node(YamlNode::Kind::nothing, mark)); }
     void OnAnchor(const YAML::Mark& mark, const std::string& name) override {
-        throw Error(source_.place_of(mark),
+        throw Error(place_of(mark),
                     fmt::format("anchors (&{}) are not supported; share values with \"include\"", name));
     }
     void OnAlias(const YAML::Mark& mark, YAML::anchor_t) override {
-        throw Error(source_.place_of(mark), "aliases (*) are not supported; share values with \"include\"");
+        throw Error(place_of(mark), "aliases (*) are not supported; share values with \"include\"");
     }
     void OnScalar(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t,
                   const std::string& value) override {
@@ -148,6 +71,8 @@ public:
     void OnMapEnd() override { close(); }
 
 private:
+    Place place_of(const YAML::Mark& mark) const { return source_.place_of(offset_of(mark)); }
+
     /// A list or map that has begun and not ended.
     struct Open {
         YamlNode node;
@@ -158,7 +83,7 @@ private:
     YamlNode node(YamlNode::Kind kind, const YAML::Mark& mark) {
         YamlNode made;
         made.kind = kind;
-        made.place = source_.place_of(mark);
+        made.place = place_of(mark);
         if (++node_count_ > YamlLimits::nodes) {
             throw Error(made.place, fmt::format("more than {} values, expected a chain", YamlLimits::nodes));
         }
@@ -168,13 +93,13 @@ private:
     /// yaml-cpp gives "?" for a plain node without a tag and "!" for quoted text.
     void refuse_tag(const YAML::Mark& mark, const std::string& tag) const {
         if (tag.empty() || tag == "?" || tag == "!") return;
-        throw Error(source_.place_of(mark), fmt::format("tags ({}) are not supported", quote(tag)));
+        throw Error(place_of(mark), fmt::format("tags ({}) are not supported", quote(tag)));
     }
 
     void open(YamlNode::Kind kind, const YAML::Mark& mark, const std::string& tag) {
         refuse_tag(mark, tag);
         if (open_.size() == YamlLimits::depth) {
-            throw Error(source_.place_of(mark), fmt::format("nested more than {} deep", YamlLimits::depth));
+            throw Error(place_of(mark), fmt::format("nested more than {} deep", YamlLimits::depth));
         }
         open_.push_back({node(kind, mark), {}, {}});
     }
@@ -197,9 +122,22 @@ private:
             check_key(added, parent);
             parent.key = std::move(added);
         } else {
-            if (added.is(YamlNode::Kind::nothing)) added.place = parent.key->place;
+            if (added.is(YamlNode::Kind::nothing)) {
+                refuse_decimal_comma(*parent.key, parent.node.members);
+                added.place = parent.key->place;
+            }
             parent.node.members.push_back({std::move(*parent.key), std::move(added)});
             parent.key.reset();
+        }
+    }
+
+    /// {radius: 0,5} is a radius of 0 and a key 5 to YAML.
+    static void refuse_decimal_comma(const YamlNode& key, const std::vector<YamlMember>& before) {
+        if (before.empty() || !stand_around_comma(before.back().value, key)) return;
+        const YamlNode& number = before.back().value;
+        if (const std::string hint = comma_hint(number.text, key.text); !hint.empty()) {
+            throw Error(number.place, fmt::format("{}: expected a number, found {}{}", before.back().key.text,
+                                                  quote(number.text + "," + key.text), hint));
         }
     }
 
@@ -215,7 +153,7 @@ private:
         }
     }
 
-    const Source& source_;
+    const YamlText& source_;
     YamlNode root_;
     std::vector<Open> open_;
     std::size_t node_count_ = 0;
@@ -239,27 +177,31 @@ std::string YamlNode::found() const {
 }
 
 YamlNode parse_yaml(std::string_view text, const std::string& origin) {
-    constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
-    if (text.starts_with(byte_order_mark)) text.remove_prefix(byte_order_mark.size());
     if (text.size() > YamlLimits::bytes) {
         throw Error(Place{.file = origin},
                     fmt::format("is larger than {} KiB, expected a chain", YamlLimits::bytes / 1024));
     }
-    const Source source(text, origin);
+    const YamlText source(text, origin);
     source.check_characters();
 
     TreeBuilder builder(source);
     try {
-        std::istringstream stream{std::string(text)};
+        std::istringstream stream{std::string(source.text())};
         YAML::Parser parser(stream);
         while (parser.HandleNextDocument(builder)) {
         }
     } catch (const YAML::Exception& error) {
-        const bool tab = source.has_tab_in_indentation(error.mark);
-        throw Error(source.place_of(error.mark), fmt::format("this is not YAML: {}{}", error.msg,
-                                                             tab ? "; indent with spaces, not tabs" : ""));
+        throw source.syntax_error(offset_of(error.mark), error.msg);
     }
+    source.check_quotes();
     return builder.take_root();
+}
+
+std::string decimal_comma_hint(const std::vector<YamlNode>& items) {
+    for (std::size_t i = 0; i + 1 < items.size(); ++i) {
+        if (stand_around_comma(items[i], items[i + 1])) return comma_hint(items[i].text, items[i + 1].text);
+    }
+    return "";
 }
 
 std::string quote(std::string_view text) {

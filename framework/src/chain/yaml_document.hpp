@@ -47,6 +47,9 @@ struct YamlLimits {
 /// needs none of them, `include` shares values, and without aliases a small file can't grow large in memory.
 YamlNode parse_yaml(std::string_view text, const std::string& origin);
 
+/// `; decimals are written with a point: 0.5` when two of the items look like one number with a comma; else "".
+std::string decimal_comma_hint(const std::vector<YamlNode>& items);
+
 /// `text` in double quotes, on one line and of bounded length, for messages.
 std::string quote(std::string_view text);
 

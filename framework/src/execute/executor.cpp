@@ -1,3 +1,4 @@
+#include <execute/device_limits.hpp>
 #include <execute/frame_decisions.hpp>
 #include <execute/nonfinite_watch.hpp>
 #include <execute/program_cache.hpp>
@@ -17,6 +18,7 @@
 #include <algorithm>
 #include <memory>
 #include <optional>
+#include <utility>
 
 namespace postfx {
 namespace {
@@ -145,6 +147,17 @@ void tell_decisions(const FrameDecisions::Outcome& outcome, const Plan& plan, Re
         report.passes[i].drawn = holds(plan.passes[i].condition, outcome.live);
 }
 
+/// The pass that first writes to a target.
+const std::string& writer_of(const Plan& plan, std::size_t target) {
+    static const std::string nobody;
+    const auto writes = [&](const Pass& pass) {
+        return std::any_of(pass.outputs.begin(), pass.outputs.end(),
+                           [&](const ImageRef& output) { return std::cmp_equal(output.index, target); });
+    };
+    const auto found = std::find_if(plan.passes.begin(), plan.passes.end(), writes);
+    return found == plan.passes.end() ? nobody : found->name;
+}
+
 /// Take from `old` a texture of that size and format, or make one.
 TexturePtr reuse_or_make(std::vector<TexturePtr>& old, const Target& target) {
     const auto found = std::find_if(old.begin(), old.end(), [&](const TexturePtr& texture) {
@@ -209,14 +222,20 @@ void Executor::prepare(const Plan& plan) {
         return;
     }
 
+    check_limits(plan, device_limits());
     State::Ready ready;
     for (const Pass& pass : plan.passes) {
         ready.passes.push_back({pass.name, state.programs.get(*pass.program, pass), {}, {}});
     }
     // A copy of the list: whatever fails below, the plan before keeps its targets.
     std::vector<TexturePtr> old = state.current.targets;
-    for (const Target& target : plan.targets)
-        ready.targets.push_back(reuse_or_make(old, target));
+    for (std::size_t i = 0; i < plan.targets.size(); ++i) {
+        try {
+            ready.targets.push_back(reuse_or_make(old, plan.targets[i]));
+        } catch (const Error& error) {
+            throw Error(Place{.effect = writer_of(plan, i)}, error.message());
+        }
+    }
     for (std::size_t i = 0; i < plan.passes.size(); ++i) {
         std::vector<GLuint> outputs;
         for (const ImageRef& output : plan.passes[i].outputs)

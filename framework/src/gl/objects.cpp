@@ -53,8 +53,8 @@ void check_size(int width, int height) {
     GLint largest = 0;
     glGetIntegerv(GL_MAX_TEXTURE_SIZE, &largest);
     if (width >= 1 && height >= 1 && width <= largest && height <= largest) return;
-    throw Error(
-        fmt::format("a texture of {}x{}; this device takes 1x1 to {}x{}", width, height, largest, largest));
+    throw Error(fmt::format("a texture of {}x{} pixels; this device has at most {}x{}", width, height,
+                            largest, largest));
 }
 
 GLuint create_texture() {

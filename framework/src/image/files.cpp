@@ -24,6 +24,13 @@ void check_size(const Path& file, long long width, long long height) {
                                height, max_side, max_pixels));
 }
 
+void check_plausible(const ImageSource& source, long long pixels) {
+    constexpr long long always_allowed = 7680LL * 4320, densest = 1LL << 15;
+    if (pixels <= always_allowed || pixels / densest <= static_cast<long long>(source.bytes.size())) return;
+    fail(source.name, fmt::format("absurd size: {} bytes can't be a picture of {} million pixels",
+                                  source.bytes.size(), pixels / 1000000));
+}
+
 void expect_no_layers(const ImageSource& source, const ImageRequest& request) {
     for (const std::string& wish : {request.layer, request.view})
         if (!wish.empty())
@@ -58,8 +65,9 @@ std::size_t max_bytes(const Path& file) {
 }
 
 /// Every kind of file that is known; the first one that recognises the bytes reads them.
-constexpr std::array known_formats = {&formats::png, &formats::jpeg, &formats::exr, &formats::hdr,
-                                      &formats::pfm};
+constexpr std::array known_formats = {&formats::png,  &formats::jpeg, &formats::heic, &formats::tiff,
+                                      &formats::webp, &formats::exr,  &formats::hdr,  &formats::pfm,
+                                      &formats::pnm,  &formats::stb};
 
 const formats::Format& format_of(const ImageSource& source) {
     for (const formats::Format* format : known_formats)

@@ -28,6 +28,10 @@ constexpr long long max_pixels = 1LL << 28;
 /// Throws Error unless 1 <= width, height <= max_side and there are at most max_pixels.
 void check_size(const Path& file, long long width, long long height);
 
+/// Throws Error if so few bytes can't be a picture of so many pixels: a small file must not ask for all memory. What an
+/// 8K display shows is always allowed; beyond that, no coding packs more than 2^15 equal pixels into a byte.
+void check_plausible(const ImageSource& source, long long pixels);
+
 /// The file's rows the other way up. Every format but PFM counts them from the top.
 template<class Number>
 BasicImage<Number> upside_down(const BasicImage<Number>& image) {
@@ -54,12 +58,18 @@ void expect_no_layers(const ImageSource& source, const ImageRequest& request);
 /// Of a file with one picture, which serves every role; `type` is that of its channels.
 ImageDescription description_of_one(const char* kind, const Image& image, const std::string& type);
 
-extern const Format png, jpeg, exr, hdr, pfm;
+extern const Format png, jpeg, heic, tiff, webp, exr, hdr, pfm, pnm;
+/// Those that only stb_image reads; last, as one of them (TGA) has no signature.
+extern const Format stb;
 
-// ---- PNG and JPEG
+// ---- PNG and JPEG, sRGB
 
-/// `codes`: 1 to 4 channels of 8 bits.
+/// `codes`: 1 to 4 channels of 8 or 16 bits.
 std::string png_bytes(const Path& file, const BasicImage<std::uint8_t>& codes);
+std::string png_bytes(const Path& file, const BasicImage<std::uint16_t>& codes);
+
+/// `codes`: 1 or 3 channels; `quality`: 0 to 1.
+std::string jpeg_bytes(const Path& file, const BasicImage<std::uint8_t>& codes, double quality);
 
 // ---- Radiance HDR
 
@@ -68,7 +78,7 @@ std::string png_bytes(const Path& file, const BasicImage<std::uint8_t>& codes);
 std::string hdr_bytes(const Image& rgb);
 
 // ---- PFM: 1 or 3 channels, either byte order, bits kept. The magnitude of the scale, which most writers leave at 1
-// and most readers ignore, is ignored.
+// and most readers ignore, is told of and ignored.
 
 /// `image`: 1 or 3 channels. Little endian.
 std::string pfm_bytes(const Image& image);
@@ -77,5 +87,10 @@ std::string pfm_bytes(const Image& image);
 
 /// Channels Y, YA, RGB or RGBA; half or float.
 std::string exr_bytes(const Path& file, const Image& image, bool half);
+
+/// The origin, an EXR, with `image` (3 or 4 channels, Rec. 709) where its picture was; see WriteOptions. Adds to `remarks`
+/// what could not be kept.
+std::string exr_bytes_carrying(const Path& file, const Image& image, const Origin& origin,
+                               std::vector<std::string>& remarks);
 
 } // namespace postfx::formats

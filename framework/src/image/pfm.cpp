@@ -4,6 +4,7 @@
 
 #include <bit>
 #include <charconv>
+#include <cmath>
 #include <cstring>
 
 namespace postfx::formats {
@@ -65,7 +66,7 @@ bool recognises_pfm(std::string_view bytes) {
     return bytes.size() > 2 && bytes[0] == 'P' && (bytes[1] == 'F' || bytes[1] == 'f') && is_space(bytes[2]);
 }
 
-Image decode_pfm(const Path& file, std::string_view bytes) {
+ImageFile decode_pfm(const Path& file, std::string_view bytes) {
     HeaderWords header(file, bytes);
     const auto width = header.next<long long>("width");
     const auto height = header.next<long long>("height");
@@ -80,20 +81,27 @@ Image decode_pfm(const Path& file, std::string_view bytes) {
     if (there < count * sizeof(float))
         fail(file, fmt::format("truncated: {} bytes of pixels where {} x {} x {} floats need {}", there,
                                width, height, channels, count * sizeof(float)));
-    Image image(static_cast<int>(width), static_cast<int>(height), channels);
+    ImageFile decoded{.image = Image(static_cast<int>(width), static_cast<int>(height), channels)};
+    Image& image = decoded.image;
+    // "The units of the samples", of which nobody says what they are; readers leave the samples as they are.
+    if (std::abs(scale) != 1)
+        decoded.warnings.push_back(fmt::format("PFM scale {}: not multiplied by", std::abs(scale)));
     char* values = reinterpret_cast<char*>(image.values.data());
     std::memcpy(values, bytes.data() + header.end(), count * sizeof(float));
     if ((scale < 0) != little_endian_machine) swap_bytes(values, count);
-    return image;
+    return decoded;
 }
 
 ImageFile read_pfm(const ImageSource& source, const ImageRequest& request) {
     expect_no_layers(source, request);
-    return {.image = decode_pfm(source.name, source.bytes)};
+    return decode_pfm(source.name, source.bytes);
 }
 
 ImageDescription describe_pfm(const ImageSource& source) {
-    return description_of_one(pfm.name, decode_pfm(source.name, source.bytes), "float");
+    const ImageFile file = decode_pfm(source.name, source.bytes);
+    ImageDescription description = description_of_one(pfm.name, file.image, "float");
+    description.warnings = file.warnings;
+    return description;
 }
 
 } // namespace

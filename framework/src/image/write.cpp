@@ -9,7 +9,9 @@
 #include <cctype>
 #include <cerrno>
 #include <cmath>
+#include <cstdio>
 #include <cstring>
+#include <limits>
 #include <utility>
 
 #include <fcntl.h>
@@ -66,6 +68,24 @@ Path name_beside(const Path& file) {
     return file.parent_path() / fmt::format(".postfx-{}-{}.new", ::getpid(), count++);
 }
 
+/// What a chain of links leads to, which need not be there; `file` itself when it is no link.
+Path end_of_links(const Path& file) {
+    constexpr int most_links = 40; // as Linux has it
+    Path target = file;
+    std::error_code ignored;
+    for (int links = 0; std::filesystem::is_symlink(target, ignored); ++links) {
+        if (links == most_links) fail_writing(file, ELOOP);
+        target = target.parent_path() / std::filesystem::read_symlink(target);
+    }
+    return target;
+}
+
+void write_to_standard_output(std::string_view bytes) {
+    std::fflush(stdout);
+    OutputDescriptor output(::dup(STDOUT_FILENO));
+    if (!output.is_open() || !output.write_and_close(bytes)) fail_writing("standard output", errno);
+}
+
 void check_image(const Path& file, int width, int height, int channels, std::size_t values) {
     formats::check_size(file, width, height);
     if (channels < 1 || channels > 4)
@@ -76,8 +96,9 @@ void check_image(const Path& file, int width, int height, int channels, std::siz
 }
 
 /// The same picture with other channels: colour is repeated from one channel or cut to it, alpha is left out.
-Image with_color_channels(const Image& image, int channels) {
-    Image colors(image.width, image.height, channels);
+template<class Number>
+BasicImage<Number> with_color_channels(const BasicImage<Number>& image, int channels) {
+    BasicImage<Number> colors(image.width, image.height, channels);
     for (std::size_t pixel = 0; pixel < image.pixel_count(); ++pixel)
         for (int channel = 0; channel < channels; ++channel)
             colors.values[pixel * channels + channel] =
@@ -85,53 +106,106 @@ Image with_color_channels(const Image& image, int channels) {
     return colors;
 }
 
-BasicImage<std::uint8_t> display_codes(const Image& image) {
+/// The channels of what has no alpha: 1 for grey, else 3.
+int color_channels(int channels) {
+    return channels < 3 ? 1 : 3;
+}
+
+template<class Code>
+BasicImage<Code> display_codes(const Image& image) {
+    constexpr double largest = std::numeric_limits<Code>::max();
     const bool has_alpha = image.channels == 2 || image.channels == 4;
-    BasicImage<std::uint8_t> codes(image.width, image.height, image.channels);
+    BasicImage<Code> codes(image.width, image.height, image.channels);
     for (std::size_t i = 0; i < image.values.size(); ++i) {
         const bool is_alpha = has_alpha && static_cast<int>(i % image.channels) == image.channels - 1;
         const double value = image.values[i];
         const double encoded = !is_alpha ? linear_to_srgb(value) : value > 0 ? std::min(value, 1.0) : 0.0;
-        codes.values[i] = static_cast<std::uint8_t>(std::lround(255 * encoded));
+        codes.values[i] = static_cast<Code>(std::lround(largest * encoded));
     }
     return codes;
 }
 
-std::string encoded(const Path& file, const Image& image, const WriteOptions& options) {
-    const std::string ending = ending_of(file);
-    if (ending == ".png") return formats::png_bytes(file, display_codes(image));
+/// ".png", ".exr", ...
+std::string ending_of_kind(const Path& file, const std::string& kind) {
+    return kind.empty() ? ending_of(file) : "." + kind;
+}
+
+bool is_jpeg(const std::string& ending) {
+    return ending == ".jpg" || ending == ".jpeg";
+}
+
+std::string encoded_codes(const Path& file, const BasicImage<std::uint8_t>& codes,
+                          const WriteOptions& options) {
+    if (!is_jpeg(ending_of_kind(file, options.kind))) return formats::png_bytes(file, codes);
+    return formats::jpeg_bytes(file, with_color_channels(codes, color_channels(codes.channels)),
+                               options.quality);
+}
+
+bool carries(const WriteOptions& options) {
+    return options.origin && formats::exr.recognises(options.origin->source->bytes);
+}
+
+std::string encoded(const Path& file, const Image& image, const WriteOptions& options,
+                    std::vector<std::string>& remarks) {
+    const std::string ending = ending_of_kind(file, options.kind);
+    if (ending == ".exr" && carries(options))
+        return formats::exr_bytes_carrying(file, image, *options.origin, remarks);
+    if (ending == ".png" && options.bits == 16)
+        return formats::png_bytes(file, display_codes<std::uint16_t>(image));
+    if (ending == ".png" || is_jpeg(ending))
+        return encoded_codes(file, display_codes<std::uint8_t>(image), options);
     if (ending == ".exr") return formats::exr_bytes(file, image, options.half);
     if (ending == ".hdr") return formats::hdr_bytes(with_color_channels(image, 3));
-    return formats::pfm_bytes(with_color_channels(image, image.channels < 3 ? 1 : 3));
+    return formats::pfm_bytes(with_color_channels(image, color_channels(image.channels)));
 }
 
 } // namespace
 
-void check_writable_kind(const std::filesystem::path& file) {
-    static const std::vector<std::string> known = {".png", ".exr", ".hdr", ".pfm"};
-    const std::string ending = ending_of(file);
+void check_writable_kind(const std::filesystem::path& file, const std::string& kind) {
+    static const std::vector<std::string> known = {".png", ".jpg", ".jpeg", ".exr", ".hdr", ".pfm"};
+    const std::string ending = ending_of_kind(file, kind);
     if (std::find(known.begin(), known.end(), ending) != known.end()) return;
-    fail(file, fmt::format("can't be written: its ending is \"{}\", expected one of {}{}", ending,
-                           fmt::join(known, ", "), ending.empty() ? "" : did_you_mean(ending, known)));
+    fail(file == "-" ? "standard output" : file,
+         fmt::format("can't be written: its {} is \"{}\", expected one of {}{}",
+                     kind.empty() ? "ending" : "kind", ending, fmt::join(known, ", "),
+                     ending.empty() ? "" : did_you_mean(ending, known)));
 }
 
-bool is_display_kind(const std::filesystem::path& file) {
-    return ending_of(file) == ".png";
+bool is_display_kind(const std::filesystem::path& file, const std::string& kind) {
+    const std::string ending = ending_of_kind(file, kind);
+    return ending == ".png" || is_jpeg(ending);
 }
 
 void write_codes(const std::filesystem::path& file, const BasicImage<std::uint8_t>& codes,
-                 const WriteOptions&) {
+                 const WriteOptions& options) {
     check_image(file, codes.width, codes.height, codes.channels, codes.values.size());
-    write_file_atomically(file, formats::png_bytes(file, codes));
+    write_file_atomically(file, encoded_codes(file, codes, options));
 }
 
-void write_image(const std::filesystem::path& file, const Image& image, const WriteOptions& options) {
-    check_writable_kind(file);
+std::vector<std::string> write_image(const std::filesystem::path& file, const Image& image,
+                                     const WriteOptions& options) {
+    check_writable_kind(file, options.kind);
     check_image(file, image.width, image.height, image.channels, image.values.size());
-    write_file_atomically(file, encoded(file, image, options));
+    std::vector<std::string> remarks;
+    write_file_atomically(file, encoded(file, image, options, remarks));
+    return remarks;
+}
+
+void check_output_folder(const std::filesystem::path& file) {
+    if (file == "-") return;
+    const Path target = end_of_links(file);
+    const Path folder = target.parent_path();
+    if (folder.empty() || std::filesystem::is_directory(folder)) return;
+    fail(file, fmt::format("can't be written: {}there is no folder {}",
+                           target == file ? "" : fmt::format("it is a link to {}, and ", target.string()),
+                           folder.string()));
 }
 
 void write_file_atomically(const std::filesystem::path& file, const std::string& bytes) {
+    if (file == "-") {
+        write_to_standard_output(bytes);
+        return;
+    }
     std::error_code ignored;
     const auto type = std::filesystem::status(file, ignored).type();
     using std::filesystem::file_type;
@@ -144,9 +218,8 @@ void write_file_atomically(const std::filesystem::path& file, const std::string&
     }
     // Renaming would replace a protected file all the same, or a link instead of what it points at.
     if (type == file_type::regular && ::access(file.c_str(), W_OK) != 0) fail_writing(file, errno);
-    const Path target =
-        std::filesystem::is_symlink(file, ignored) ? std::filesystem::weakly_canonical(file) : file;
-
+    check_output_folder(file);
+    const Path target = end_of_links(file);
     const Path beside = name_beside(target);
     OutputDescriptor output(::open(beside.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666));
     if (!output.is_open()) fail_writing(file, errno);

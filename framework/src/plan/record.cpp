@@ -15,7 +15,7 @@
 namespace postfx {
 namespace {
 
-constexpr int largest_side = 16384;
+constexpr int largest_side = 32768; // no device has more; what the one at hand has, the executor asks
 constexpr std::array moments = {"configuration", "scene"};
 constexpr std::array identity_kinds = {"exact", "code", "visible"};
 
@@ -29,9 +29,10 @@ bool is_one_of(std::string_view word, const std::array<const char*, count>& word
     return std::find(words.begin(), words.end(), word) != words.end();
 }
 
-/// Thrown between record()'s own functions only; never crosses the plugin.
+/// What keeps an effect from being planned. Thrown between record()'s own functions only; never crosses the plugin.
 struct Wrong {
     std::string message;
+    bool by_refusal = false; ///< of its values, by the effect; otherwise a mistake in what it declares
 };
 
 /// Receives the calls of one plan(). No exception may leave a callback: the plugin is not ours, so the first
@@ -50,35 +51,39 @@ public:
         abi_.pass = on_pass;
         abi_.decide = on_decide;
         abi_.size = on_size;
+        abi_.fail = on_fail;
     }
 
     const postfx_builder& abi() const { return abi_; }
 
     Recording finish() {
-        if (problem_.empty()) {
-            const bool composed = !recording_.passes.empty() && recording_.passes.back().compose;
-            if (recording_.identity && !recording_.passes.empty()) {
-                problem_ = "says that it is the identity, and declares passes";
-            } else if (!recording_.identity && !composed) {
-                problem_ = "says neither identity() nor ends with compose()";
-            }
-        }
-        if (!problem_.empty()) throw Error(Place{.effect = entry_.name}, problem_);
-        return std::move(recording_);
+        guarded([&] { check_complete(); });
+        if (!problem_) return std::move(recording_);
+        const Place place{.effect = entry_.name};
+        if (problem_->by_refusal) throw Refusal(place, problem_->message);
+        throw Error(place, problem_->message);
     }
 
 private:
     static Recorder& self(void* context) { return *static_cast<Recorder*>(context); }
 
     void guarded(const std::function<void()>& body) {
-        if (!problem_.empty()) return;
+        if (problem_) return;
         try {
             body();
         } catch (const Wrong& wrong) {
-            problem_ = wrong.message;
+            problem_ = wrong;
         } catch (const std::exception& error) {
-            problem_ = error.what();
+            problem_ = Wrong{error.what()};
         }
+    }
+
+    void check_complete() const {
+        const bool composed = !recording_.passes.empty() && recording_.passes.back().compose;
+        if (recording_.identity && !recording_.passes.empty()) {
+            throw Wrong{"says that it is the identity, and declares passes"};
+        }
+        if (!recording_.identity && !composed) throw Wrong{"says neither identity() nor ends with compose()"};
     }
 
     static std::int32_t on_identity(void* context, const char* moment, const char* kind, const char* reason) {
@@ -96,6 +101,10 @@ private:
         self(context).guarded([&] { self(context).decide(copy_abi<postfx_decision>(decision)); });
     }
     static void on_refuse(void* context, const char* message) {
+        self(context).guarded(
+            [&] { throw Wrong{.message = std::string(word_of(message)), .by_refusal = true}; });
+    }
+    static void on_fail(void* context, const char* message) {
         self(context).guarded([&] { throw Wrong{std::string(word_of(message))}; });
     }
     static postfx_image on_color(void* context) {
@@ -230,8 +239,8 @@ private:
         pass.height = static_cast<int>(declared.height);
         if (declared.width < 1 || declared.height < 1 || declared.width > largest_side
             || declared.height > largest_side) {
-            throw Wrong{
-                fmt::format("pass {} wants {}x{} pixels", pass.name, declared.width, declared.height)};
+            throw Wrong{fmt::format("pass {} wants {}x{} pixels, a side has 1 to {}", pass.name,
+                                    declared.width, declared.height, largest_side)};
         }
         // A compose function's pass has the chain's colour besides.
         const std::size_t most = pass.compose ? most_pass_inputs - 1 : most_pass_inputs;
@@ -318,7 +327,7 @@ private:
     Skip skip_;
     postfx_builder abi_{};
     Recording recording_;
-    std::string problem_;
+    std::optional<Wrong> problem_;
 };
 
 std::vector<const char*> c_strings(const std::vector<std::string>& strings) {

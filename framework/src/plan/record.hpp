@@ -78,7 +78,8 @@ Codes display_codes();
 /// In front of an effect, if `behind` holds behind it. Infinite if the effect does not say what it does.
 Codes codes_before(const ChainEntry& entry, const Facts& facts, const Codes& behind);
 
-/// Call the effect's plan(). Throws Error naming the chain entry when it refuses or declares something wrong.
+/// Call the effect's plan(). Naming the chain entry, throws Refusal when it refuses its values, and Error when it
+/// declares something wrong.
 /// `skip`: what it may leave out; `codes`: behind it.
 Recording record(const ChainEntry& entry, const Facts& facts, Skip skip, const Codes& codes);
 

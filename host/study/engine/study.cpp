@@ -2,7 +2,7 @@
 
 #include "growth.hpp"
 #include "interruption.hpp"
-#include "resources.hpp"
+#include "scene_input.hpp"
 #include "thumbnails.hpp"
 
 #include "study/fit.hpp"
@@ -82,7 +82,7 @@ Study::Study(const Catalog& catalog, Spec spec, StudyOptions options)
 
 std::shared_ptr<StudyScene> Study::scene(const std::string& name) {
     std::shared_ptr<StudyScene>& found = scenes_[name];
-    if (!found) found = std::make_shared<StudyScene>(open_scene(name, data_directory() / "configs/scenes"));
+    if (!found) found = std::make_shared<StudyScene>(open_known_scene(name));
     return found;
 }
 

@@ -1,0 +1,245 @@
+#include "assimp_model.hpp"
+
+#include "animation_clips.hpp"
+#include "asset_files.hpp"
+#include "assimp_parts.hpp"
+#include "file_kind.hpp"
+#include "mesh_checks.hpp"
+
+#include <base/read_file.hpp>
+
+#include <postfx/error.hpp>
+
+#include <assimp/DefaultIOSystem.h>
+#include <assimp/Importer.hpp>
+#include <assimp/config.h>
+#include <assimp/postprocess.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <map>
+#include <new>
+#include <set>
+
+namespace postfx::host {
+namespace {
+
+std::string lower(std::string text) {
+    std::transform(text.begin(), text.end(), text.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    return text;
+}
+
+/// The ending that files of the model's kind usually have, by its content; its own where the content tells nothing.
+std::string usual_ending(const std::filesystem::path& file) {
+    std::error_code unknown;
+    const std::string ending = model_ending(read_start(file, recognized_bytes, "a model"),
+                                            std::filesystem::file_size(file, unknown));
+    return ending.empty() ? lower(file.extension().string()) : ending;
+}
+
+/// The model under the name that its content should have, since assimp goes by names, and what it refers to as find_asset
+/// finds it; tells of every file once.
+class AssetSystem : public Assimp::DefaultIOSystem {
+public:
+    AssetSystem(std::filesystem::path model, std::string alias, const ReadingHooks& hooks)
+        : model_(std::move(model)), alias_(std::move(alias)), hooks_(hooks) {}
+
+    bool Exists(const char* name) const override { return name == alias_ || DefaultIOSystem::Exists(name); }
+    Assimp::IOStream* Open(const char* name, const char* mode) override {
+        std::filesystem::path file = name == alias_ ? model_ : std::filesystem::path(name);
+        std::error_code problem;
+        if (!std::filesystem::is_regular_file(file, problem)) {
+            const auto asset = find_asset(model_, name);
+            if (!asset) return nullptr;
+            file = *asset;
+        }
+        if (opened_.insert(file).second) hooks_.opening(std::filesystem::file_size(file, problem));
+        return DefaultIOSystem::Open(file.c_str(), mode);
+    }
+
+private:
+    std::filesystem::path model_;
+    std::string alias_;
+    const ReadingHooks& hooks_;
+    std::set<std::filesystem::path>
+        opened_; ///< assimp opens the same file again and again, to guess what it is
+};
+
+/// assimp says nothing of a material library that an OBJ names and that is not there.
+void check_material_libraries(const std::filesystem::path& file, Losses& losses) {
+    static const LossKind kind{"material library is missing", "material libraries are missing"};
+    if (usual_ending(file) != ".obj") return;
+    std::ifstream stream(file);
+    for (std::string line; std::getline(stream, line);) {
+        if (!line.starts_with("mtllib ")) continue;
+        while (!line.empty() && (line.back() == '\r' || line.back() == ' '))
+            line.pop_back();
+        const std::string name = line.substr(std::min(line.find_first_not_of(' ', 7), line.size()));
+        if (!find_asset(file, name)) losses.add(kind, name);
+    }
+}
+
+class AssimpReader {
+public:
+    AssimpReader(const std::filesystem::path& file, const aiScene& scene, const ReadingHooks& hooks)
+        : scene_(scene), pictures_(file, hooks, losses_) {
+        check_material_libraries(file, losses_);
+    }
+
+    Model read() {
+        for (unsigned i = 0; i < scene_.mNumMaterials; ++i) {
+            AssimpMaterial material = read_assimp_material(scene_, *scene_.mMaterials[i], pictures_, losses_);
+            model_.materials.push_back(std::move(material.material));
+            uv_sets_.push_back(material.uv_sets);
+        }
+        add_nodes();
+        add_cameras();
+        static const LossKind lights{"light is left out, for its format has no unit for it",
+                                     "lights are left out, for their format has no unit for them"};
+        losses_.add(lights, scene_.mNumLights ? scene_.mLights[0]->mName.C_Str() : "", scene_.mNumLights);
+        std::vector<NodeKeys> at_rest;
+        for (const Node& node : model_.nodes)
+            at_rest.push_back(keys_at_rest(node.local));
+        std::vector<AnimationClip> clips;
+        for (unsigned i = 0; i < scene_.mNumAnimations; ++i)
+            clips.push_back(read_assimp_animation(*scene_.mAnimations[i], node_by_name_, model_.nodes));
+        play_clips(std::move(clips), at_rest, model_.nodes, losses_);
+        model_.losses = losses_.lines();
+        return std::move(model_);
+    }
+
+private:
+    /// Parents first, then what stands in the nodes: bones may come later than what they move.
+    void add_nodes() {
+        std::vector<std::pair<const aiNode*, std::optional<std::size_t>>> open{
+            {scene_.mRootNode, std::nullopt}};
+        std::vector<const aiNode*> sources;
+        for (std::size_t i = 0; i < open.size(); ++i) {
+            const auto [source, parent] = open[i];
+            Node node;
+            node.name = source->mName.C_Str();
+            node.parent = parent;
+            node.local = to_glm(source->mTransformation);
+            node_by_name_.try_emplace(node.name, i);
+            model_.nodes.push_back(std::move(node));
+            sources.push_back(source);
+            for (unsigned child = 0; child < source->mNumChildren; ++child)
+                open.emplace_back(source->mChildren[child], i);
+        }
+        for (std::size_t i = 0; i < sources.size(); ++i) {
+            for (unsigned mesh = 0; mesh < sources[i]->mNumMeshes; ++mesh)
+                add_part(i, sources[i]->mMeshes[mesh]);
+        }
+    }
+
+    void add_part(std::size_t node, unsigned mesh) {
+        const aiMesh& source = *scene_.mMeshes[mesh];
+        const auto [known, added] = meshes_.try_emplace(mesh);
+        if (added) {
+            known->second = std::make_shared<const Mesh>(
+                read_assimp_mesh(source, uv_sets_[source.mMaterialIndex], losses_));
+        }
+        if (known->second->empty()) return; // points and lines
+        const Part part{known->second, source.mMaterialIndex};
+        if (!part.mesh->deformation) {
+            model_.nodes[node].parts.push_back(part);
+            return;
+        }
+        // A node of its own, since each mesh has its own list of bones and shapes.
+        Node own;
+        own.name = model_.nodes[node].name;
+        own.parent = node;
+        own.parts.push_back(part);
+        for (unsigned i = 0; i < source.mNumAnimMeshes; ++i)
+            own.shape_weights.push_back(source.mAnimMeshes[i]->mWeight);
+        if (source.mNumBones > 0) {
+            own.skin = model_.skins.size();
+            model_.skins.push_back(read_skin(source, node));
+        }
+        model_.nodes.push_back(std::move(own));
+    }
+
+    Skin read_skin(const aiMesh& mesh, std::size_t otherwise) {
+        static const LossKind kind{"bone is no node", "bones are no nodes"};
+        Skin skin;
+        for (unsigned i = 0; i < mesh.mNumBones; ++i) {
+            const aiBone& bone = *mesh.mBones[i];
+            const auto node = node_by_name_.find(bone.mName.C_Str());
+            if (node == node_by_name_.end()) losses_.add(kind, bone.mName.C_Str());
+            const bool found = node != node_by_name_.end();
+            skin.joints.push_back(found ? node->second : otherwise);
+            skin.mesh_to_joint.push_back(found ? to_glm(bone.mOffsetMatrix) : glm::dmat4(1));
+        }
+        return skin;
+    }
+
+    void add_cameras() {
+        for (unsigned i = 0; i < scene_.mNumCameras; ++i) {
+            const aiCamera& source = *scene_.mCameras[i];
+            const auto node = node_by_name_.find(source.mName.C_Str());
+            if (node == node_by_name_.end()) continue;
+            const auto vector = [](const aiVector3D& v) {
+                return glm::dvec3(static_cast<double>(v.x), static_cast<double>(v.y),
+                                  static_cast<double>(v.z));
+            };
+            NamedCamera camera{{source.mName.C_Str()}, {}};
+            camera.camera.parent = node->second;
+            camera.camera.position = vector(source.mPosition);
+            camera.camera.look_at = camera.camera.position + vector(source.mLookAt);
+            camera.camera.up = vector(source.mUp);
+            const double aspect = source.mAspect > 0 ? static_cast<double>(source.mAspect) : 1;
+            const double half = std::tan(static_cast<double>(source.mHorizontalFOV) / 2) / aspect;
+            camera.camera.vertical_fov = std::clamp(2 * glm::degrees(std::atan(half)), 1.0, 170.0);
+            if (source.mClipPlaneNear > 0)
+                camera.camera.near_plane = static_cast<double>(source.mClipPlaneNear);
+            model_.cameras.push_back(std::move(camera));
+        }
+    }
+
+    const aiScene& scene_;
+    Losses losses_;
+    ModelPictures pictures_;
+    Model model_;
+    std::vector<std::vector<std::size_t>> uv_sets_; ///< of the materials
+    std::map<std::string, std::size_t> node_by_name_;
+    std::map<unsigned, std::shared_ptr<const Mesh>> meshes_;
+};
+
+/// What went wrong in assimp; a lack of memory leaves as such.
+[[noreturn]] void fail(const std::filesystem::path& file, const Assimp::Importer& importer) {
+    if (importer.GetException()) {
+        try {
+            std::rethrow_exception(importer.GetException());
+        } catch (const std::bad_alloc&) {
+            throw;
+        } catch (...) { // NOLINT(bugprone-empty-catch): the message below says it
+        }
+    }
+    throw Error({file.string(), 0, 0, {}, {}},
+                fmt::format("can't read this model: {}", importer.GetErrorString()));
+}
+
+} // namespace
+
+Model read_with_assimp(const std::filesystem::path& file, const ReadingHooks& hooks) {
+    Assimp::Importer importer;
+    // Beside the file, so that the names in it are found from there.
+    const std::string alias = (folder_of(file) / ("postfx-model" + usual_ending(file))).string();
+    importer.SetIOHandler(new AssetSystem(file, alias, hooks));          // the importer deletes it
+    importer.SetPropertyFloat(AI_CONFIG_PP_GSN_MAX_SMOOTHING_ANGLE, 40); // sharper edges stay edges
+    const aiScene* scene = importer.ReadFile(
+        alias, aiProcess_Triangulate | aiProcess_GenSmoothNormals | aiProcess_JoinIdenticalVertices
+                   | aiProcess_SortByPType | aiProcess_ImproveCacheLocality | aiProcess_TransformUVCoords);
+    if (!scene || !scene->mRootNode) fail(file, importer);
+    return AssimpReader(file, *scene, hooks).read();
+}
+
+bool is_model_file(const std::filesystem::path& file) {
+    const std::string ending = file.extension().string();
+    return !ending.empty() && Assimp::Importer().IsExtensionSupported(ending);
+}
+
+} // namespace postfx::host
