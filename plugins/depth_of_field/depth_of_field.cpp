@@ -53,49 +53,29 @@ struct Gather {
     int largest_radius; ///< texels; for larger circles the layers get coarser, so that the cost does not grow
     int finest_block;   ///< a texel of the layers is at least so many pixels wide
     int block_step; ///< and, if not one, a multiple of this: only even ones can be interpolated by the sampler
-    /// Discs of the background are gathered from every second texel from the first radius [texels] on, from every
-    /// fourth from the second on: large ones have texels enough.
-    double thin_from, thinnest_from;
-    /// The foreground's discs are gathered from every texel (1), every second (2) or every fourth (4).
-    int foreground_lattice;
-    /// Where the largest disc is no larger [texels], all are gathered from every texel: fewer ones would be a coarser
-    /// picture than a lower level's.
-    int whole_up_to;
-    /// Edge of a tile, texels. A tile and its eight neighbours must hold everything that reaches a texel of the
-    /// tile or one beside it: largest_radius + half a texel of edge + 1.
+    /// Edge of a tile, texels; even. A tile and its eight neighbours must hold everything that reaches a texel of the
+    /// tile or one beside it: largest_radius + half a disc's edge + 1.
     int tile;
+    /// By how much a disc's edge is wider than a texel for each pixel that a block of two or three has beyond one.
+    /// Interpolated, an edge of one texel would show the texels' corners, and the more the larger those are.
+    double softening;
 
+    /// Texels over which a disc's edge falls.
+    double edge(int block) const { return 1 + softening * std::min(block - 1, 2); }
     /// Of a gathered disc: where a texel is a pixel it may be wider than the circle, see own_spread().
     double widest() const { return largest_radius + 0.1; }
-    int smallest_lattice() const { return thin_from > smallest_radius ? 1 : 2; }
-    bool joins_background() const { return thin_from < largest_radius; }
-    bool joins_foreground() const { return foreground_lattice > 1; }
 };
-constexpr double never = 99; ///< a radius that no disc has
 
-/// Without the lattices that no disc of this picture is large enough for: they cost a pass that joins them. Radii in
-/// texels: the largest, and the largest behind the focus.
-Gather fitted(Gather gather, double largest, double largest_behind) {
-    const bool whole = largest <= gather.whole_up_to;
-    if (whole || largest_behind < gather.thin_from) gather.thin_from = gather.thinnest_from = never;
-    if (whole) gather.foreground_lattice = 1;
-    return gather;
-}
-
-enum LevelIndex { low, medium, high, ultra, reference, classic };
+enum LevelIndex { low, medium, ultra, reference, classic };
 constexpr postfx_level levels[] = {
-    postfx::level("low", "Discs of up to 69 samples, in layers of a quarter of the size at 720 rows"),
-    postfx::level("medium", "Discs of up to 69 samples (near: 45), in layers of half the size at 720 rows"),
-    postfx::level("high", "Discs of up to 177 samples, in layers of half the size at 720 rows"),
-    postfx::level("ultra", "Discs of up to 169 samples, in layers of the full size at 720 rows"),
+    postfx::level("low", "Discs in layers of a quarter of the size at 720 rows"),
+    postfx::level("medium", "Discs in layers of half the size at 720 rows"),
+    postfx::level("ultra", "Discs in layers of the full size at 720 rows"),
     postfx::level("reference", "Discs of every pixel, of any radius; slow"),
     postfx::level("classic", "Mean of a square; leaks, and near surfaces keep sharp edges"),
 };
-constexpr Gather gathers[] = {{4, 2, 2, never, never, 1, 0, 8},
-                              {7, 2, 2, 4, 5, 4, 0, 16},
-                              {7, 2, 2, never, never, 1, 0, 16},
-                              {14, 1, 1, 0, 7, 4, 7, 16},
-                              {40, 1, 1, never, never, 1, 0, 48}};
+constexpr Gather gathers[] = {
+    {4, 2, 2, 8, 0}, {7, 2, 1, 16, 0.25}, {14, 1, 1, 16, 0.25}, {40, 1, 1, 48, 0.25}};
 
 /// Pictures with fewer rows than twice this have layers of the full size.
 constexpr int rows_of_a_pixel = 360;
@@ -170,20 +150,18 @@ AxialShift axial_shift(const postfx::Request& in, double limit) {
 }
 
 /// Square of the radius [texels] of a disc that spreads as much as all but the gathered disc does (radius^2 = 4
-/// variances), beyond what pixels do anyway: those are squares of light, seen by squares.
-double own_spread(int lattice, int block) {
+/// variances), beyond what pixels do anyway: those are squares of light, seen by squares. edge: of a disc, texels.
+double own_spread(int block, double edge) {
     const double pixel = 1.0 / (block * block); // texels^2
     const double averaging = (1 - pixel) / 12;
-    const double soft_edge = 1.0 / 12;
+    const double soft_edge = edge * edge * 5 / 48;
     const double interpolation = block == 1 ? 0 : block % 2 == 0 ? 1.0 / 6 + pixel / 12 : (1 - pixel) / 6;
-    const double joining = lattice == 1 ? 0 : lattice == 2 ? 1.0 / 4 : 1.0 / 2;
-    return 4 * (averaging + soft_edge + interpolation + joining - pixel / 6);
+    return 4 * (averaging + soft_edge + interpolation - pixel / 6);
 }
 
 /// 1 / (the smallest circle [px] that the layers can blur by - the largest sharp one).
-double share_slope(int lattice, int block) {
-    const double radius =
-        block * std::sqrt(std::max(own_spread(lattice, block) + smallest_radius * smallest_radius, 0.0));
+double share_slope(int block, double spread) {
+    const double radius = block * std::sqrt(std::max(spread + smallest_radius * smallest_radius, 0.0));
     return 1 / (std::max(2 * radius, shortest_transition + sharp_diameter) - sharp_diameter);
 }
 
@@ -195,124 +173,178 @@ int up_to_multiple(int size, int unit) {
     return static_cast<int>(divide_up(size, unit)) * unit;
 }
 
-/// The picture split into background and foreground, each blurred at a reduced size.
-void declare_gathers(const postfx::Request& in, postfx::Builder& out, const Lens& lens, const Gather& level) {
+/// What the passes of one picture agree on.
+struct Layout {
+    Gather level;
+    Lens lens;
+    AxialShift shift;
+    int block;                   ///< pixels
+    std::uint32_t width, height; ///< of the layers, texels
+    std::uint32_t across, along; ///< of the tiles
+    std::uint32_t masked;        ///< edge of what is drawn or not as a whole, texels
+
+    double texels() const { return 0.5 / block; } ///< of radius per pixel of diameter
+    double edge() const { return level.edge(block); }
+    double spread() const { return own_spread(block, edge()); }
+    double axial_reach() const;
+};
+
+Layout layout_of(const postfx::Request& in, const Lens& lens, const Gather& level) {
     const AxialShift shift = axial_shift(in, lens.limit);
-    const double largest = (lens.limit + shift.reach()) / 2; // pixels
     // Small pictures have finer layers, or their look would be another.
     const int finest = std::min(level.finest_block, std::max(1, in.height() / rows_of_a_pixel));
+    const double largest = (lens.limit + shift.reach()) / 2; // pixels
     const int fitting = std::max(finest, static_cast<int>(std::ceil(largest / level.largest_radius)));
     const int block = fitting == 1 ? 1 : up_to_multiple(fitting, level.block_step);
-    const double texels = 0.5 / block; // of radius per pixel of diameter
-    const Gather gather = fitted(level, largest / block, (lens.sky + shift.reach()) * texels);
-    const double far_slope = share_slope(gather.smallest_lattice(), block);
-    const double near_slope = share_slope(gather.foreground_lattice, block);
-    const std::uint32_t width = divide_up(in.width(), block), height = divide_up(in.height(), block);
-    const std::uint32_t tiles_x = divide_up(in.width(), block * gather.tile);
-    const std::uint32_t tiles_y = divide_up(in.height(), block * gather.tile);
-    const int axial = shift.any() ? 1 : 0;
+    return {.level = level,
+            .lens = lens,
+            .shift = shift,
+            .block = block,
+            .width = divide_up(in.width(), block),
+            .height = divide_up(in.height(), block),
+            .across = divide_up(in.width(), block * level.tile),
+            .along = divide_up(in.height(), block * level.tile),
+            .masked = static_cast<std::uint32_t>(level.tile * tiles_of_a_mask)};
+}
 
-    const postfx::PlanImage depth = out.attachment("depth");
+/// By how much a gathered disc's radius [texels] grows at most by axial aberration: of the smallest the most is taken
+/// off, which a larger circle gets back.
+double Layout::axial_reach() const {
+    const double shifted = shift.reach() * texels();
+    const double circle = std::sqrt(std::max(spread() + smallest_radius * smallest_radius, 0.0)) + shifted;
+    return std::max(shifted, std::sqrt(std::max(circle * circle - spread(), 0.0)) - smallest_radius);
+}
+
+/// The picture split in two.
+struct Layers {
+    postfx::PlanImage background, foreground, thickness;
+};
+
+Layers declare_layers(postfx::Builder& out, const Layout& layout) {
+    const double widest = layout.level.widest();
     const postfx::PlanImage discs = out.pass("discs", "depth_of_field_discs.glsl")
-                                        .value("largest_radius", gather.widest())
-                                        .constant("DEPTH_OF_FIELD_LATTICE", gather.foreground_lattice)
+                                        .value("largest_radius", widest)
+                                        .constant("DEPTH_OF_FIELD_EDGE", layout.edge())
                                         .format("r32f")
                                         .sized(disc_entries, 1);
-    const postfx::PlanImage background =
+    const Lens& lens = layout.lens;
+    const postfx::PlanImage layers =
         out.pass("layers", "depth_of_field_layers.glsl")
             .reads("source", out.color(), "nearest")
-            .reads("depth", depth, "nearest")
+            .reads("depth", out.attachment("depth"), "nearest")
             .reads("discs", discs, "nearest")
             .value("lens", lens.scale, lens.offset, lens.sky, lens.limit)
-            .value("entries_per_texel", (disc_entries - 1) / (gather.widest() - smallest_radius))
-            .constant("DEPTH_OF_FIELD_BLOCK", block)
-            .constant("DEPTH_OF_FIELD_FAR_SLOPE", far_slope)
-            .constant("DEPTH_OF_FIELD_NEAR_SLOPE", near_slope)
-            .constant("DEPTH_OF_FIELD_FAR_SPREAD", own_spread(1, block))
-            .constant("DEPTH_OF_FIELD_THIN_SPREAD", own_spread(2, block))
-            .constant("DEPTH_OF_FIELD_THINNEST_SPREAD", own_spread(4, block))
-            .constant("DEPTH_OF_FIELD_THIN_FROM", gather.thin_from)
-            .constant("DEPTH_OF_FIELD_THINNEST_FROM", gather.thinnest_from)
-            .constant("DEPTH_OF_FIELD_NEAR_SPREAD", own_spread(gather.foreground_lattice, block))
+            .value("entries_per_texel", (disc_entries - 1) / (widest - smallest_radius))
+            .constant("DEPTH_OF_FIELD_BLOCK", layout.block)
+            .constant("DEPTH_OF_FIELD_SLOPE", share_slope(layout.block, layout.spread()))
+            .constant("DEPTH_OF_FIELD_SPREAD", layout.spread())
             .formats({gathered, gathered, "r32f"})
-            .sized(width, height);
-    const postfx::PlanImage foreground = background.output(1);
-    const postfx::PlanImage thickness = background.output(2);
+            .sized(layout.width, layout.height);
+    return {layers, layers.output(1), layers.output(2)};
+}
+
+/// What can reach each tile, and which squares of tiles are to be drawn.
+struct Reach {
+    postfx::PlanImage radii, blurred, covered;
+};
+
+Reach declare_reach(postfx::Builder& out, const Layout& layout, const Layers& layers) {
     const postfx::PlanImage tiles = out.pass("tiles", "depth_of_field_tiles.glsl")
-                                        .reads("foreground", foreground, "nearest")
-                                        .reads("background", background, "nearest")
-                                        .constant("DEPTH_OF_FIELD_TILE", gather.tile)
+                                        .reads("foreground", layers.foreground, "nearest")
+                                        .reads("background", layers.background, "nearest")
+                                        .constant("DEPTH_OF_FIELD_TILE", layout.level.tile)
                                         .format("rgba32f")
-                                        .sized(tiles_x, tiles_y);
+                                        .sized(layout.across, layout.along);
     const postfx::PlanImage reach = out.pass("reach", "depth_of_field_reach.glsl")
                                         .reads("tiles", tiles, "nearest")
                                         .formats({"rgba32f", "r8"})
-                                        .sized(tiles_x, tiles_y);
-    const auto side = static_cast<std::uint32_t>(gather.tile * tiles_of_a_mask);
-    const postfx::PlanImage blurred = out.pass("mask", "depth_of_field_mask.glsl")
-                                          .reads("reach", reach, "nearest")
-                                          .reads("blurred", reach.output(1), "nearest")
-                                          .constant("DEPTH_OF_FIELD_MASK", tiles_of_a_mask)
-                                          .formats({"r8", "r8"})
-                                          .sized(divide_up(static_cast<int>(tiles_x), tiles_of_a_mask),
-                                                 divide_up(static_cast<int>(tiles_y), tiles_of_a_mask));
-    const postfx::PlanImage covered = blurred.output(1);
-    postfx::PlanImage blurred_foreground =
-        out.pass("foreground", "depth_of_field_foreground.glsl")
-            .reads("layer", foreground, "nearest")
-            .reads("thickness", thickness, "nearest")
-            .reads("reach", reach, "nearest")
-            .value("axial_shift", -shift.red * texels, -shift.green * texels, -shift.blue * texels)
-            .value("axial_reach", shift.reach() * texels)
-            .constant("DEPTH_OF_FIELD_TILE", gather.tile)
-            .constant("DEPTH_OF_FIELD_LATTICE", gather.foreground_lattice)
-            .constant("DEPTH_OF_FIELD_AXIAL", axial)
-            .format(gathered)
-            .sized(width, height)
-            .where(covered, side);
-    postfx::PlanImage blurred_background =
-        out.pass("background", "depth_of_field_background.glsl")
-            .reads("layer", background, "nearest")
-            .reads("before", foreground, "nearest")
-            .reads("thickness", thickness, "nearest")
-            .reads("covered", blurred_foreground, "nearest")
-            .reads("reach", reach, "nearest")
-            .value("axial_shift", shift.red * texels, shift.green * texels, shift.blue * texels)
-            .value("axial_reach", shift.reach() * texels)
-            .constant("DEPTH_OF_FIELD_TILE", gather.tile)
-            .constant("DEPTH_OF_FIELD_THIN_FROM", gather.thin_from)
-            .constant("DEPTH_OF_FIELD_THINNEST_FROM", gather.thinnest_from)
-            .constant("DEPTH_OF_FIELD_AXIAL", axial)
-            .format(gathered)
-            .sized(width, height)
-            .where(blurred, side);
-    if (gather.joins_background()) {
-        blurred_background = out.pass("join_background", "depth_of_field_join_background.glsl")
-                                 .reads("background", blurred_background, "nearest")
-                                 .format(gathered)
-                                 .sized(width, height)
-                                 .where(blurred, side);
-    }
-    if (gather.joins_foreground()) {
-        blurred_foreground = out.pass("join_foreground", "depth_of_field_join_foreground.glsl")
-                                 .reads("foreground", blurred_foreground, "nearest")
-                                 .reads("reach", reach, "nearest")
-                                 .constant("DEPTH_OF_FIELD_TILE", gather.tile)
-                                 .constant("DEPTH_OF_FIELD_LATTICE", gather.foreground_lattice)
-                                 .format(gathered)
-                                 .sized(width, height)
-                                 .where(covered, side);
-    }
+                                        .sized(layout.across, layout.along);
+    const postfx::PlanImage mask = out.pass("mask", "depth_of_field_mask.glsl")
+                                       .reads("reach", reach, "nearest")
+                                       .reads("blurred", reach.output(1), "nearest")
+                                       .constant("DEPTH_OF_FIELD_MASK", tiles_of_a_mask)
+                                       .formats({"r8", "r8"})
+                                       .sized(divide_up(static_cast<int>(layout.across), tiles_of_a_mask),
+                                              divide_up(static_cast<int>(layout.along), tiles_of_a_mask));
+    return {reach, mask, mask.output(1)};
+}
+
+/// A pass that sums discs for squares of 2x2 texels. side: 1 behind the focus, -1 before it, where a circle grows by
+/// what it shrinks by behind.
+postfx::PlanImage gather(const Layout& layout, double side, postfx::PassDeclaration& pass,
+                         postfx::PlanImage mask) {
+    const double texels = side * layout.texels();
+    return pass.value("axial_shift", layout.shift.red * texels, layout.shift.blue * texels)
+        .value("axial_reach", layout.axial_reach())
+        .constant("DEPTH_OF_FIELD_TILE", layout.level.tile)
+        .constant("DEPTH_OF_FIELD_EDGE", layout.edge())
+        .constant("DEPTH_OF_FIELD_SPREAD", layout.spread())
+        .constant("DEPTH_OF_FIELD_AXIAL", layout.shift.any() ? 1 : 0)
+        .formats({gathered, gathered, gathered, gathered})
+        .sized((layout.width + 1) / 2, (layout.height + 1) / 2)
+        .where(mask, layout.masked / 2);
+}
+
+/// Lets a pass read the texels of those squares.
+postfx::PassDeclaration& reads_squares(postfx::PassDeclaration&& pass, postfx::PlanImage squares) {
+    return pass.reads("first", squares, "nearest")
+        .reads("second", squares.output(1), "nearest")
+        .reads("third", squares.output(2), "nearest")
+        .reads("fourth", squares.output(3), "nearest");
+}
+
+postfx::PlanImage blurred_foreground(postfx::Builder& out, const Layout& layout, const Layers& layers,
+                                     const Reach& reach) {
+    const postfx::PlanImage squares =
+        gather(layout, -1,
+               out.pass("gather_foreground", "depth_of_field_gather_foreground.glsl")
+                   .reads("layer", layers.foreground, "nearest")
+                   .reads("thickness", layers.thickness, "nearest")
+                   .reads("reach", reach.radii, "nearest"),
+               reach.covered);
+    return reads_squares(out.pass("foreground", "depth_of_field_foreground.glsl"), squares)
+        .format(gathered)
+        .sized(layout.width, layout.height)
+        .where(reach.covered, layout.masked);
+}
+
+postfx::PlanImage blurred_background(postfx::Builder& out, const Layout& layout, const Layers& layers,
+                                     const Reach& reach, postfx::PlanImage foreground) {
+    const postfx::PlanImage squares =
+        gather(layout, 1,
+               out.pass("gather_background", "depth_of_field_gather_background.glsl")
+                   .reads("layer", layers.background, "nearest")
+                   .reads("reach", reach.radii, "nearest"),
+               reach.blurred);
+    return reads_squares(out.pass("background", "depth_of_field_background.glsl"), squares)
+        .reads("layer", layers.background, "nearest")
+        .reads("before", layers.foreground, "nearest")
+        .reads("covered", foreground, "nearest")
+        .reads("reach", reach.radii, "nearest")
+        .constant("DEPTH_OF_FIELD_TILE", layout.level.tile)
+        .constant("DEPTH_OF_FIELD_EDGE", layout.edge())
+        .format(gathered)
+        .sized(layout.width, layout.height)
+        .where(reach.blurred, layout.masked);
+}
+
+/// The picture split into background and foreground, each blurred at a reduced size.
+void declare_gathers(const postfx::Request& in, postfx::Builder& out, const Lens& lens, const Gather& level) {
+    const Layout layout = layout_of(in, lens, level);
+    const Layers layers = declare_layers(out, layout);
+    const Reach reach = declare_reach(out, layout, layers);
+    const postfx::PlanImage foreground = blurred_foreground(out, layout, layers, reach);
+    const postfx::PlanImage background = blurred_background(out, layout, layers, reach, foreground);
+    const int block = layout.block;
     const char* filter = block == 1 ? "nearest" : "linear";
     out.compose("depth_of_field.glsl")
         .constant("DEPTH_OF_FIELD_BY_HAND", block > 1 && block % 2 == 1 ? 1 : 0)
-        .reads("depth", depth, "nearest")
-        .reads("background", blurred_background, filter)
-        .reads("foreground", blurred_foreground, filter)
+        .reads("depth", out.attachment("depth"), "nearest")
+        .reads("background", background, filter)
+        .reads("foreground", foreground, filter)
         .value("lens", lens.scale, lens.offset, lens.sky, lens.limit)
-        .value("layer_scale", 1 / (double(block) * width), 1 / (double(block) * height))
-        .constant("DEPTH_OF_FIELD_FAR_SLOPE", far_slope)
-        .constant("DEPTH_OF_FIELD_NEAR_SLOPE", near_slope);
+        .value("layer_scale", 1 / (double(block) * layout.width), 1 / (double(block) * layout.height))
+        .constant("DEPTH_OF_FIELD_SLOPE", share_slope(block, layout.spread()));
 }
 
 postfx::PlanImage declare_classic(postfx::Builder& out, const Lens& lens) {

@@ -2,20 +2,11 @@
 #include "depth_of_field_share.glsl"
 #include <postfx/numeric.glsl>
 
-// Radius [texels] of the disc that is gathered for a mean circle [px]. The block, the joined lattice and the
+// Radius [texels] of the disc that is gathered for a mean circle [px]. The block, the disc's soft edge and the
 // interpolation spread light too; theirs is taken off, so that the whole has the circle's variance.
-float depth_of_field_radius(float circle, float own_spread) {
+float depth_of_field_radius(float circle) {
     float radius = circle * (0.5 / float(DEPTH_OF_FIELD_BLOCK));
-    return sqrt(max(radius * radius - own_spread, 0.25));
-}
-
-// The same behind the focus, where the lattice depends on the radius.
-float depth_of_field_far_radius(float circle) {
-    float radius = depth_of_field_radius(circle, DEPTH_OF_FIELD_FAR_SPREAD);
-    if (radius < DEPTH_OF_FIELD_THIN_FROM) return radius;
-    radius = max(depth_of_field_radius(circle, DEPTH_OF_FIELD_THIN_SPREAD), DEPTH_OF_FIELD_THIN_FROM);
-    if (radius < DEPTH_OF_FIELD_THINNEST_FROM) return radius;
-    return max(depth_of_field_radius(circle, DEPTH_OF_FIELD_THINNEST_SPREAD), DEPTH_OF_FIELD_THINNEST_FROM);
+    return sqrt(max(radius * radius - DEPTH_OF_FIELD_SPREAD, 0.25));
 }
 
 // Splits a block of pixels into what lies behind the focus plane and what lies before it, so that no later sum can
@@ -47,12 +38,12 @@ void depth_of_field_layers(Pixel pixel, DepthOfFieldLayersParams params, sampler
     background = vec4(0.0, 0.0, 0.0, -1.0);
     if (sharp_sum.a > 0.0) background = vec4(sharp_sum.rgb / sharp_sum.a, 0.0);
     if (far_sum.a > 0.0) {
-        background = vec4(far_sum.rgb / far_sum.a, depth_of_field_far_radius(far_circle / far_sum.a));
+        background = vec4(far_sum.rgb / far_sum.a, depth_of_field_radius(far_circle / far_sum.a));
     }
     foreground = vec4(0.0);
     thickness = vec4(0.0);
     if (near_sum.a > 0.0) {
-        float radius = depth_of_field_radius(near_circle / near_sum.a, DEPTH_OF_FIELD_NEAR_SPREAD);
+        float radius = depth_of_field_radius(near_circle / near_sum.a);
         int entries = textureSize(discs, 0).x - 1;
         float entry = clamp((radius - 0.5) * params.entries_per_texel, 0.0, float(entries));
         int below = min(int(entry), entries - 1);

@@ -62,10 +62,8 @@ public:
         const double near = std::abs(unlimited(camera_.near_plane));
         const double sky = std::abs(unlimited(std::numeric_limits<double>::infinity()));
         limit_ = std::min(input.value("max_circle_of_confusion") * height_, std::max(near, sky));
-        behind_limit_ = std::min(limit_, sky);
     }
     double limit() const { return limit_; }
-    double behind_limit() const { return behind_limit_; } ///< of what is behind the focus
     bool blurs() const { return limit_ > sharp && aperture_ > 0; }
 
     /// Signed diameter [px] of the circle for a raw depth sample.
@@ -103,7 +101,7 @@ private:
     }
 
     Camera camera_;
-    double focus_, aperture_, height_, focal_length_, longer_red_, limit_ = 0, behind_limit_ = 0;
+    double focus_, aperture_, height_, focal_length_, longer_red_, limit_ = 0;
 };
 
 } // namespace postfx::testing

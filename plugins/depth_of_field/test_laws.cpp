@@ -11,7 +11,7 @@ using namespace postfx::testing;
 
 namespace {
 
-constexpr int all_levels[] = {low, medium, high, ultra, reference_level, classic};
+constexpr int all_levels[] = {low, medium, ultra, reference_level, classic};
 /// Sums of up to 256 weighted samples in float32, in another order.
 constexpr double rounding = 1e-5;
 
@@ -144,7 +144,7 @@ TEST_CASE("constant light stays constant whatever the depth") {
 }
 
 TEST_CASE("a point inside the picture keeps its energy and spreads as a disc of the circle's diameter") {
-    for (int level : {low, medium, high, ultra, reference_level}) {
+    for (int level : {low, medium, ultra, reference_level}) {
         for (double side : {0.8, -0.8}) {
             for (double diameter : {6.0, 8.0, 10.5}) {
                 Spread mean;
@@ -207,7 +207,7 @@ TEST_CASE("a sharp bright edge does not leak into the blur behind it") {
 TEST_CASE("a near edge spreads over the sharp background as a disc's edge does") {
     // What the layers' texels soften of a disc of 10 px; a pixel is a tenth of it.
     const std::pair<int, double> bounds[] = {
-        {low, 0.09}, {medium, 0.09}, {high, 0.06}, {ultra, 0.04}, {reference_level, 0.03}};
+        {low, 0.09}, {medium, 0.09}, {ultra, 0.04}, {reference_level, 0.03}};
     const Image color = painted(size, size, [](int x, int) { return x < 48 ? 1 : 0; });
     for (const auto& [level, bound] : bounds) {
         const double diameter = 10;
@@ -232,7 +232,7 @@ TEST_CASE("axial aberration gives each colour its own circle, and none at 0") {
     // Signed circles grow by H e / (2 N tan(fov/2)) for a focal length shorter by the share e.
     const auto bending = [](double micrometres) { return 1 / (micrometres * micrometres); };
     const double whole = bending(0.464) - bending(0.612);
-    for (int level : {medium, high, ultra, reference_level}) { // low's texels are too coarse for 3 px
+    for (int level : {medium, ultra, reference_level}) { // low's texels are too coarse for 3 px
         for (double side : {0.8, -0.8}) {
             if (level == medium && side < 0) continue; // and so are its steps there
             const auto distance = [&](int, int) { return distance_with(side); };

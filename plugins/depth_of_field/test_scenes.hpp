@@ -9,9 +9,9 @@
 
 namespace postfx::testing {
 
-enum LevelIndex { low, medium, high, ultra, reference_level, classic };
-inline constexpr const char* level_names[] = {"low", "medium", "high", "ultra", "reference", "classic"};
-inline constexpr int gathering_levels[] = {low, medium, high, ultra, reference_level};
+enum LevelIndex { low, medium, ultra, reference_level, classic };
+inline constexpr const char* level_names[] = {"low", "medium", "ultra", "reference", "classic"};
+inline constexpr int gathering_levels[] = {low, medium, ultra, reference_level};
 
 inline constexpr float infinity = std::numeric_limits<float>::infinity();
 inline constexpr float not_a_number = std::numeric_limits<float>::quiet_NaN();
