@@ -39,19 +39,24 @@ public:
     Allowance() {
         rlimit no_core{0, 0};
         ::setrlimit(RLIMIT_CORE, &no_core);
+        apply();
     }
 
     void add_file(std::uintmax_t bytes) {
-        // A second and two for each MiB: the slowest formats are text, and read at more than 5 MB/s.
-        milliseconds_ += 1000 + bytes * 2000 / mebibyte;
+        // Two seconds for each MiB: the slowest formats are text, and read at more than 5 MB/s.
+        milliseconds_ += (files_++ == 0 ? 0 : 1000) + bytes * 2000 / mebibyte;
         memory_ += 64 * bytes; // text as geometry, deflated pictures as pixels
+        apply();
+    }
+
+private:
+    void apply() const {
         limit(RLIMIT_CPU, milliseconds_ / 1000 * (sanitized ? 10 : 1));
         if (!sanitized) limit(RLIMIT_AS, memory_);
         // For what waits and uses no processor; ten times as long, since others may be using it.
         ::alarm(static_cast<unsigned>(20 + milliseconds_ / 100));
     }
 
-private:
     static void limit(decltype(RLIMIT_AS) what, rlim_t value) {
         rlimit now{};
         ::getrlimit(what, &now);
@@ -59,7 +64,7 @@ private:
         ::setrlimit(what, &now);
     }
 
-    std::uintmax_t milliseconds_ = 0;
+    std::uintmax_t milliseconds_ = 1000, files_ = 0;
     rlim_t memory_ = 768 * mebibyte; ///< of addresses; the program itself has some 200 MiB of them
 };
 

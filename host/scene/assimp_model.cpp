@@ -176,6 +176,17 @@ private:
         return skin;
     }
 
+    /// Radians from side to side. assimp 5.2 drops Collada's, and takes its own default for degrees.
+    double width_of_view(const aiCamera& camera) {
+        static const LossKind kind{"camera is without its field of view, and has 45 degrees",
+                                   "cameras are without their fields of view, and have 45 degrees"};
+        constexpr double least = 0.02; // about a degree
+        const auto told = static_cast<double>(camera.mHorizontalFOV);
+        if (told > least && told < glm::radians(180.0)) return told;
+        losses_.add(kind, camera.mName.C_Str());
+        return glm::radians(45.0);
+    }
+
     void add_cameras() {
         for (unsigned i = 0; i < scene_.mNumCameras; ++i) {
             const aiCamera& source = *scene_.mCameras[i];
@@ -191,7 +202,8 @@ private:
             camera.camera.look_at = camera.camera.position + vector(source.mLookAt);
             camera.camera.up = vector(source.mUp);
             const double aspect = source.mAspect > 0 ? static_cast<double>(source.mAspect) : 1;
-            const double half = std::tan(static_cast<double>(source.mHorizontalFOV) / 2) / aspect;
+            const double width = width_of_view(source);
+            const double half = std::tan(width / 2) / aspect;
             camera.camera.vertical_fov = std::clamp(2 * glm::degrees(std::atan(half)), 1.0, 170.0);
             if (source.mClipPlaneNear > 0)
                 camera.camera.near_plane = static_cast<double>(source.mClipPlaneNear);

@@ -195,7 +195,7 @@ void SceneBuffers::upload_materials(const Scene& scene) {
         const Material& material = scene.materials[i];
         const MaterialBlock block = block_of(material);
         std::memcpy(bytes.data() + i * material_stride_, &block, sizeof block);
-        Textures textures{.any = material.textured()};
+        Textures textures{.any = material.textured() || material.alpha_cutoff > 0};
         const auto maps = textures_of(material);
         for (std::size_t map = 0; map < maps.size(); ++map) {
             textures.names[map] = texture_of(*maps[map]);

@@ -165,7 +165,10 @@ SurfaceCode surface_code(const Material& material, bool extra) {
 gl::Program make_mesh_program(const OutputNames& outputs, const SurfaceCode& surface,
                               const std::vector<LightCode>& lights) {
     ShaderText fragment;
-    fragment.made(surface_constants(surface)).file("view.glsl").file("material.glsl");
+    fragment.made(surface_constants(surface))
+        .file("view.glsl")
+        .file("material_block.glsl")
+        .file("material.glsl");
     fragment.file(surface.textured ? "surface_textured.glsl" : "surface_plain.glsl");
     fragment.file("lighting.glsl").made(light_calls(lights)).file("shade.glsl");
     fragment.made(mesh_outputs(outputs)).file("mesh.frag.glsl");
@@ -180,6 +183,12 @@ gl::Program make_depth_program() {
 gl::Program make_shadow_program() {
     return link(ShaderText().file("shadow.vert.glsl"), ShaderText().file("depth_only.frag.glsl"),
                 "scene shadow");
+}
+
+gl::Program make_cut_shadow_program() {
+    return link(ShaderText().file("shadow.vert.glsl"),
+                ShaderText().file("material_block.glsl").file("shadow_cut.frag.glsl"),
+                "scene shadow of cut surfaces");
 }
 
 gl::Program make_sky_program() {

@@ -45,6 +45,8 @@ gl::Program make_mesh_program(const OutputNames& outputs, const SurfaceCode& sur
 /// Only depth, at exactly the same depth as make_mesh_program.
 gl::Program make_depth_program();
 gl::Program make_shadow_program();
+/// Of materials that are cut by their alpha; reads their block and diffuse texture.
+gl::Program make_cut_shadow_program();
 gl::Program make_sky_program();
 /// Several samples per pixel to one: light is averaged, depth and normal come from the nearest sample.
 /// Samplers: binding 0 is depth, 1 + index the outputs. Without `depth`, which normals need, only light.

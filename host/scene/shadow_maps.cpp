@@ -70,15 +70,19 @@ ShadowMaps::ShadowMaps(const Scene& scene) {
         glNamedFramebufferTextureLayer(framebuffer, GL_DEPTH_ATTACHMENT, name, 0, static_cast<GLint>(layer));
         glNamedFramebufferDrawBuffer(framebuffer, GL_NONE);
     }
-    if (!maps_.empty()) program_ = make_shadow_program();
+    if (maps_.empty()) return;
+    program_ = make_shadow_program();
+    const bool any_cut = std::any_of(scene.materials.begin(), scene.materials.end(),
+                                     [](const Material& material) { return material.alpha_cutoff > 0; });
+    if (any_cut) cut_program_ = make_cut_shadow_program();
 }
 
 void ShadowMaps::draw(const Scene& scene, const std::vector<glm::dmat4>& nodes, const Camera& camera,
                       const SceneBuffers& buffers) {
     if (maps_.empty()) return;
     glViewport(0, 0, map_size, map_size);
-    glUseProgram(program_.name());
     glBindVertexArray(buffers.vertex_array());
+    glVertexAttrib3f(4, 0, 0, 1); // where no mesh has extras
     glEnable(GL_POLYGON_OFFSET_FILL);
     glPolygonOffset(-1.5f, -2); // away from the light, which is towards 0
     for (Map& map : maps_) {
@@ -93,15 +97,20 @@ void ShadowMaps::draw(const Scene& scene, const std::vector<glm::dmat4>& nodes, 
         glBindFramebuffer(GL_FRAMEBUFFER, map.framebuffer.name());
         glClearNamedFramebufferfv(map.framebuffer.name(), GL_DEPTH, 0, &far_away);
         for (const DrawPart& part : buffers.parts()) {
-            if (scene.materials[part.material].blended) continue;
+            const Material& material = scene.materials[part.material];
+            if (material.blended) continue;
             const glm::dmat4& to_world = nodes[part.node];
             if (outside(map.world_to_clip, part.bounds.transformed(to_world))) continue;
+            const bool cut = material.alpha_cutoff > 0;
+            glUseProgram((cut ? cut_program_ : program_).name());
+            if (cut) buffers.bind_material(part.material);
             const glm::mat4 to_light(map.world_to_clip * to_world);
             glUniformMatrix4fv(0, 1, GL_FALSE, glm::value_ptr(to_light));
             glDrawElementsBaseVertex(GL_TRIANGLES, part.index_count, GL_UNSIGNED_INT,
                                      reinterpret_cast<const void*>(part.first_index), part.base_vertex);
         }
     }
+    SceneBuffers::unbind_samplers();
     glDisable(GL_POLYGON_OFFSET_FILL);
 }
 

@@ -37,7 +37,7 @@ private:
     };
     std::vector<Map> maps_;
     gl::Handle<gl::destroy_texture> texture_;
-    gl::Program program_;
+    gl::Program program_, cut_program_; ///< cut_program_ only if some material is cut
 };
 
 } // namespace postfx::host

@@ -2,15 +2,6 @@
 // said by constants that are generated for it: SCENE_PLACED, SCENE_EXTRA, SCENE_NORMAL_MAP,
 // SCENE_METAL_ROUGH, SCENE_OCCLUDED, SCENE_CUT, SCENE_UNLIT.
 
-layout(std140, binding = 1) uniform SceneMaterial {
-    vec4 diffuse;     // rgb; a: opacity
-    vec4 specular;    // rgb; w: exponent
-    vec4 emission;    // rgb; w: alpha below which nothing is there
-    vec4 factors;     // x: of the normal map, y: of occlusion, z: of roughness, w: of metalness
-    vec4 uv_rows[10]; // for each texture those of u and of v: xyz: factors of (u, v, 1); w: 1 for the second uv
-    bvec4 is;         // x: blended
-} u_material;
-
 struct Surface {
     vec3 diffuse;
     vec3 specular; // seen head-on

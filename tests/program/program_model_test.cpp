@@ -96,6 +96,40 @@ TEST_CASE("a file that the reader does not survive is one message") {
     CHECK(std::chrono::steady_clock::now() - start < std::chrono::seconds(60)); // busy machines are slow
 }
 
+#if !defined(__SANITIZE_ADDRESS__) // whose runtime wants to be the first library
+TEST_CASE("a reader that does not end, or eats all memory, is stopped") {
+    const TemporaryDirectory folder;
+    std::ofstream(folder / "m.obj") << "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+    // In place of assimp's own.
+    std::ofstream(folder / "bad.cpp") << R"(#include <cstdlib>
+#include <new>
+namespace Assimp {
+struct Importer { const void* ReadFile(const char*, unsigned); };
+const void* Importer::ReadFile(const char*, unsigned) {
+    while (std::getenv("EAT")) {
+        volatile char* page = static_cast<char*>(::operator new(1 << 20));
+        for (int i = 0; i < 1 << 20; i += 4096) page[i] = 1;
+    }
+    for (volatile int i = 0;; i = i + 1) {}
+}
+}
+)";
+    const Outcome built =
+        run_command({POSTFX_CXX_COMPILER, "-shared", "-fPIC", "bad.cpp", "-o", "bad.so"}, folder.path());
+    INFO(built.err);
+    REQUIRE(built.status == 0);
+    const auto refused = [&](const std::string& variable, const std::string& words) {
+        check_refused(run_command({"env", variable, "LD_PRELOAD=" + (folder / "bad.so").string(),
+                                   POSTFX_BUILD_DIRECTORY "/postfx", "render", "m.obj", "--chain", "none",
+                                   "-o", "out.png"},
+                                  folder.path()),
+                      "m.obj: can't read this model: the reader ran out of " + words);
+    };
+    refused("SPIN=1", "time");
+    refused("EAT=1", "memory");
+}
+#endif
+
 TEST_CASE("the reader of models is no command for users") {
     const Outcome help = run_program({"--help"});
     CHECK(help.status == 0);

@@ -244,6 +244,30 @@ TEST_CASE("alpha is for MASK and BLEND alone, and vertices have it too") {
     CHECK(covered({{"alphaMode", "BLEND"}}) == std::pair(false, false)); // what is blended leaves no depth
 }
 
+TEST_CASE("what MASK cuts away throws no shadow") {
+    // A lamp shines through a small quad upon a large one, whose middle the camera sees from beside.
+    const auto lit = [](double alpha) {
+        Scene scene = scene_of([&](GltfFile& gltf) {
+            const Json white = {{"metallicFactor", 0}, {"roughnessFactor", 1}};
+            gltf.add_node({{"mesh", gltf.add_quad({{"pbrMetallicRoughness", white}})}});
+            const Json pane = {{"alphaMode", "MASK"},
+                               {"doubleSided", true},
+                               {"pbrMetallicRoughness", {{"baseColorFactor", {1, 1, 1, alpha}}}}};
+            gltf.add_node(
+                {{"mesh", gltf.add_quad(pane)}, {"scale", {0.3, 0.3, 1}}, {"translation", {0, 0, 2}}});
+            gltf.json["extensions"]["KHR_lights_punctual"]["lights"] = {
+                {{"type", "spot"}, {"intensity", 50}, {"spot", {{"outerConeAngle", 0.6}}}}};
+            gltf.add_node(
+                {{"translation", {0, 0, 4}}, {"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}});
+        });
+        scene.camera.position = {3, 0, 1};
+        scene.camera.look_at = {0, 0, 0};
+        return draw(std::move(scene)).at(0, 0).g;
+    };
+    CHECK(lit(0.9) < 0.1f);
+    CHECK(lit(0.1) > 0.5f);
+}
+
 TEST_CASE("metalness and roughness are factors times a texture") {
     const auto shown = [](double metalness, double roughness, const char* picture) {
         return draw(scene_of([&](GltfFile& gltf) {
