@@ -90,13 +90,6 @@ void OutputOptions::declare(CLI::App& app, const std::string& help) {
         ->capture_default_str();
 }
 
-std::string kind_of(const PictureFile& file) {
-    std::string kind = file.kind.empty() ? file.path.extension().string() : "." + file.kind;
-    std::transform(kind.begin(), kind.end(), kind.begin(),
-                   [](unsigned char letter) { return static_cast<char>(std::tolower(letter)); });
-    return kind == ".jpeg" ? "jpg" : kind.substr(std::min<std::size_t>(1, kind.size()));
-}
-
 PictureFile OutputOptions::file() const {
     const bool standard_output = path_ == "-" || path_ == "/dev/stdout" || path_ == "/dev/fd/1";
     const PictureFile file{standard_output ? "-" : path_, kind_, bits_, quality_};
@@ -106,7 +99,7 @@ PictureFile OutputOptions::file() const {
     if (standard_output && ::isatty(STDOUT_FILENO) != 0)
         throw Error("standard output is a terminal, which shows no picture; send it to a file or a program");
     check_writable_kind(file.path, file.kind);
-    if (bits_ == 16 && kind_of(file) != "png") throw Error("--bits 16 is for a PNG");
+    if (bits_ == 16 && written_kind(file.path, file.kind) != "png") throw Error("--bits 16 is for a PNG");
     check_output_folder(file.path);
     return file;
 }

@@ -67,9 +67,6 @@ struct PictureFile {
     bool is_standard_output() const { return path == "-"; }
 };
 
-/// "png", "exr", ...: the kind that is asked for, else the path's ending in small letters; jpeg is jpg.
-std::string kind_of(const PictureFile& file);
-
 /// -o, --format, --bits and --quality.
 class OutputOptions {
 public:

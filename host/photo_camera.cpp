@@ -19,7 +19,8 @@ std::optional<double> distance_at(const Image& depth, const Camera& camera, Pict
         return std::clamp(static_cast<int>(std::floor(share * pixels)), 0, pixels - 1);
     };
     const int x = pixel_of(point.x, depth.width), y = depth.height - 1 - pixel_of(point.y, depth.height);
-    const int radius = static_cast<int>(std::lround(0.01 * depth.height));
+    // A hundredth of the height, and never one sample alone.
+    const int radius = std::max(1, static_cast<int>(std::lround(0.01 * depth.height)));
     std::vector<double> distances;
     for (int row = std::max(0, y - radius); row <= std::min(depth.height - 1, y + radius); ++row)
         for (int column = std::max(0, x - radius); column <= std::min(depth.width - 1, x + radius);

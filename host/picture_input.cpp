@@ -99,7 +99,7 @@ private:
         const std::string& name = own ? options_.color_ : options_.depth_;
         DepthSamples depth = options_.depth_options_.read(name, measurement(Role::depth, name),
                                                           input_.color.image, input_.camera);
-        tell_or_refuse(name, depth.warnings, options_.strict_, false);
+        tell_or_refuse(name, depth.warnings, options_.strict_);
         tell_lines(name, depth.remarks, false);
         input_.attachments["depth"] = std::move(depth.samples);
     }
@@ -110,7 +110,7 @@ private:
         const ImageFile file = measurement(Role::normal, name);
         check_size(file.image, name);
         const ViewNormals normals = options_.normal_options_.read(name, file, input_.color, input_.camera);
-        tell_or_refuse(name, normals.warnings, options_.strict_, false);
+        tell_or_refuse(name, normals.warnings, options_.strict_);
         input_.attachments["normal"] = widened(normals.image);
     }
 
@@ -164,7 +164,7 @@ private:
     ImageFile file(const ImageSource& source, const ImageRequest& request) const {
         ImageFile read = read_image(source, request);
         tell(source.name.string(), read.honoured);
-        tell_or_refuse(source.name.string(), read.warnings, options_.strict_, false);
+        tell_or_refuse(source.name.string(), read.warnings, options_.strict_);
         return read;
     }
 

@@ -14,11 +14,10 @@ void tell_lines(const std::string& file, const std::vector<std::string>& lines, 
         fmt::print(stderr, "postfx: {}: {}\n", file, line);
 }
 
-void tell_or_refuse(const std::string& file, const std::vector<std::string>& warnings, bool strict,
-                    bool quiet) {
+void tell_or_refuse(const std::string& file, const std::vector<std::string>& warnings, bool strict) {
     if (strict && !warnings.empty())
         throw Error(Place{.file = file}, warnings.front() + " (refused: --strict)");
-    tell_lines(file, warnings, quiet);
+    tell_lines(file, warnings, false);
 }
 
 } // namespace postfx::host

@@ -21,7 +21,7 @@ namespace {
 
 /// How a file of that kind has its alpha when nothing else is said: as its format's documentation has it.
 Coding::Alpha usual_alpha(const PictureFile& file) {
-    const std::string kind = kind_of(file);
+    const std::string kind = written_kind(file.path, file.kind);
     if (kind == "exr") return Coding::Alpha::premultiplied;
     return kind == "png" ? Coding::Alpha::straight : Coding::Alpha::none;
 }
@@ -84,7 +84,7 @@ public:
         ChainRunner runner(std::move(chain), facts);
         const Textures textures = upload(runner.attachments());
         runner.run(textures, frame, Timing::off, report_options_.watch());
-        tell_or_refuse(output.path.string(), write_picture(runner, output, written), false, false);
+        tell_lines(output.path.string(), write_picture(runner, output, written), false);
         if (report_options_.wants_times())
             runner.run(textures, frame, Timing::profile, report_options_.watch());
         report_options_.tell(runner.executor().report(), budget, output);
@@ -105,13 +105,14 @@ private:
                                                        : Coding::Alpha::premultiplied;
         const bool can_hold_alpha = usual_alpha(output) != Coding::Alpha::none;
         if (written.alpha_of_file != Coding::Alpha::none && !can_hold_alpha)
-            throw Error(fmt::format("--alpha {}: a .{} has no alpha", alpha_, kind_of(output)));
+            throw Error(fmt::format("--alpha {}: a .{} has no alpha", alpha_,
+                                    written_kind(output.path, output.kind)));
         if (!can_hold_alpha && alpha_.empty() && is_transparent(input.color.image))
             tell_or_refuse(
                 output.path.string(),
                 {fmt::format("a .{} has no alpha: it is left out (--alpha drop says that it may be)",
-                             kind_of(output))},
-                picture_options_.strict(), false);
+                             written_kind(output.path, output.kind))},
+                picture_options_.strict());
         written.alpha_of_chain = had;
         if (had == Coding::Alpha::straight && written.alpha_of_file == Coding::Alpha::premultiplied) {
             input.color.image = with_alpha(std::move(input.color.image), had, written.alpha_of_file);

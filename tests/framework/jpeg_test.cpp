@@ -2,6 +2,8 @@
 #include "icc_profiles.hpp"
 #include "image_checks.hpp"
 
+#include <jpeg_segments.hpp>
+
 #include <image/srgb.hpp>
 
 #include <cstdio> // before jpeglib.h, which needs it
@@ -49,18 +51,6 @@ std::string jpeg_of(const std::vector<std::uint8_t>& codes, J_COLOR_SPACE space,
     return result;
 }
 
-std::string segment(int marker, const std::string& data) {
-    const std::size_t length = data.size() + 2;
-    return std::string{'\xff', static_cast<char>(marker), static_cast<char>(length >> 8),
-                       static_cast<char>(length)}
-           + data;
-}
-
-/// Segments behind the beginning.
-std::string with_segments(std::string jpeg, const std::string& segments) {
-    return jpeg.insert(2, segments);
-}
-
 /// In pieces of 200 bytes, the last one first.
 std::string profile_segments(const std::string& profile) {
     const std::size_t size = 200, count = (profile.size() + size - 1) / size;
@@ -69,33 +59,6 @@ std::string profile_segments(const std::string& profile) {
         segments += segment(0xe2, std::string("ICC_PROFILE\0", 12) + static_cast<char>(i + 1)
                                       + static_cast<char>(count) + profile.substr(i * size, size));
     return segments;
-}
-
-std::string little(std::uint32_t value, int bytes) {
-    std::string text;
-    for (int i = 0; i < bytes; ++i)
-        text += static_cast<char>(value >> (8 * i));
-    return text;
-}
-
-std::string field(int tag, int type, std::uint32_t count, std::uint32_t value) {
-    return little(static_cast<std::uint32_t>(tag), 2) + little(static_cast<std::uint32_t>(type), 2)
-           + little(count, 4) + little(value, 4);
-}
-
-/// Orientation, and behind it a directory with the focal length (4.25 mm), that for 35 mm film, and the colour space.
-std::string exif_segment(int orientation, std::uint32_t color_space,
-                         const std::string& interoperability = {}) {
-    const std::uint32_t first = 8, second = first + 2 + 2 * 12 + 4, third = second + 2 + 4 * 12 + 4;
-    std::string tiff = std::string("II*\0", 4) + little(first, 4);
-    tiff += little(2, 2) + field(0x0112, 3, 1, static_cast<std::uint32_t>(orientation))
-            + field(0x8769, 4, 1, second) + little(0, 4);
-    tiff += little(4, 2) + field(0x920a, 5, 1, third) + field(0xa001, 3, 1, color_space)
-            + field(0xa005, 4, 1, third + 8) + field(0xa405, 3, 1, 26) + little(0, 4);
-    tiff += little(425, 4) + little(100, 4);
-    tiff += little(1, 2) + little(1, 2) + little(2, 2) + little(4, 4)
-            + (interoperability + std::string(4, '\0')).substr(0, 4) + little(0, 4);
-    return segment(0xe1, std::string("Exif\0\0", 6) + tiff);
 }
 
 ImageFile read_jpeg(const std::string& bytes, Role role = Role::color) {

@@ -123,6 +123,8 @@ void write_codes(const std::filesystem::path& file, const BasicImage<std::uint8_
 std::vector<std::string> write_image(const std::filesystem::path& file, const Image& image,
                                      const WriteOptions& options = {});
 
+/// "png", "jpg", "exr", ...: `kind` where it is given, else the file's ending, in small letters; jpeg is jpg. "" for none.
+std::string written_kind(const std::filesystem::path& file, const std::string& kind = "");
 /// Is `file`'s ending, or `kind` where it is given, one that write_image knows? Throws Error (naming the kinds) if not.
 void check_writable_kind(const std::filesystem::path& file, const std::string& kind = "");
 /// .png, .jpg: a display-referred file.

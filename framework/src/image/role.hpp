@@ -6,7 +6,7 @@ namespace postfx {
 /// Light (color, emission, ambient) is decoded as the file says: profiles, gamma, primaries. Measurements (depth,
 /// normal, data) are numbers: colour profiles and gamma are ignored, codes are divided by the largest code, but the
 /// orientation of a photograph turns the maps that belong to it. A texture is a model's: its codes as they are
-/// stored, nothing is applied, not even an orientation (glTF 2.0, 3.8.2).
+/// stored, nothing is applied: glTF 2.0 demands it of ICC profiles and permits it of EXIF, so an orientation is not either.
 enum class Role { color, emission, ambient, depth, normal, data, texture };
 
 constexpr bool is_light(Role role) {

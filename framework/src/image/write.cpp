@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cctype>
 #include <cerrno>
@@ -22,13 +23,6 @@ namespace {
 
 using formats::fail;
 using formats::Path;
-
-std::string ending_of(const Path& file) {
-    std::string ending = file.extension().string();
-    std::transform(ending.begin(), ending.end(), ending.begin(),
-                   [](unsigned char letter) { return static_cast<char>(std::tolower(letter)); });
-    return ending;
-}
 
 [[noreturn]] void fail_writing(const Path& file, int code) {
     fail(file, fmt::format("can't be written: {}", std::strerror(code)));
@@ -125,18 +119,9 @@ BasicImage<Code> display_codes(const Image& image) {
     return codes;
 }
 
-/// ".png", ".exr", ...
-std::string ending_of_kind(const Path& file, const std::string& kind) {
-    return kind.empty() ? ending_of(file) : "." + kind;
-}
-
-bool is_jpeg(const std::string& ending) {
-    return ending == ".jpg" || ending == ".jpeg";
-}
-
 std::string encoded_codes(const Path& file, const BasicImage<std::uint8_t>& codes,
                           const WriteOptions& options) {
-    if (!is_jpeg(ending_of_kind(file, options.kind))) return formats::png_bytes(file, codes);
+    if (written_kind(file, options.kind) != "jpg") return formats::png_bytes(file, codes);
     return formats::jpeg_bytes(file, with_color_channels(codes, color_channels(codes.channels)),
                                options.quality);
 }
@@ -147,33 +132,45 @@ bool carries(const WriteOptions& options) {
 
 std::string encoded(const Path& file, const Image& image, const WriteOptions& options,
                     std::vector<std::string>& remarks) {
-    const std::string ending = ending_of_kind(file, options.kind);
-    if (ending == ".exr" && carries(options))
+    const std::string kind = written_kind(file, options.kind);
+    if (kind == "exr" && carries(options))
         return formats::exr_bytes_carrying(file, image, *options.origin, remarks);
-    if (ending == ".png" && options.bits == 16)
+    if (kind == "png" && options.bits == 16)
         return formats::png_bytes(file, display_codes<std::uint16_t>(image));
-    if (ending == ".png" || is_jpeg(ending))
-        return encoded_codes(file, display_codes<std::uint8_t>(image), options);
-    if (ending == ".exr") return formats::exr_bytes(file, image, options.half);
-    if (ending == ".hdr") return formats::hdr_bytes(with_color_channels(image, 3));
+    if (is_display_kind(file, kind)) return encoded_codes(file, display_codes<std::uint8_t>(image), options);
+    if (kind == "exr") return formats::exr_bytes(file, image, options.half);
+    if (kind == "hdr") return formats::hdr_bytes(with_color_channels(image, 3));
     return formats::pfm_bytes(with_color_channels(image, color_channels(image.channels)));
 }
 
 } // namespace
 
+std::string written_kind(const std::filesystem::path& file, const std::string& kind) {
+    std::string word = kind.empty() ? file.extension().string() : kind;
+    if (word.starts_with('.')) word.erase(0, 1);
+    std::transform(word.begin(), word.end(), word.begin(),
+                   [](unsigned char letter) { return static_cast<char>(std::tolower(letter)); });
+    return word == "jpeg" ? "jpg" : word;
+}
+
 void check_writable_kind(const std::filesystem::path& file, const std::string& kind) {
-    static const std::vector<std::string> known = {".png", ".jpg", ".jpeg", ".exr", ".hdr", ".pfm"};
-    const std::string ending = ending_of_kind(file, kind);
-    if (std::find(known.begin(), known.end(), ending) != known.end()) return;
+    static constexpr std::array known = {"png", "jpg", "exr", "hdr", "pfm"};
+    const std::string wanted = written_kind(file, kind);
+    if (std::find(known.begin(), known.end(), wanted) != known.end()) return;
+    // As the user writes it: an ending has a dot.
+    const auto word = [&](const std::string& name) { return (kind.empty() ? "." : "") + name; };
+    std::vector<std::string> words;
+    for (const char* name : known)
+        words.push_back(word(name));
     fail(file == "-" ? "standard output" : file,
          fmt::format("can't be written: its {} is \"{}\", expected one of {}{}",
-                     kind.empty() ? "ending" : "kind", ending, fmt::join(known, ", "),
-                     ending.empty() ? "" : did_you_mean(ending, known)));
+                     kind.empty() ? "ending" : "kind", wanted.empty() ? "" : word(wanted),
+                     fmt::join(words, ", "), wanted.empty() ? "" : did_you_mean(word(wanted), words)));
 }
 
 bool is_display_kind(const std::filesystem::path& file, const std::string& kind) {
-    const std::string ending = ending_of_kind(file, kind);
-    return ending == ".png" || is_jpeg(ending);
+    const std::string written = written_kind(file, kind);
+    return written == "png" || written == "jpg";
 }
 
 void write_codes(const std::filesystem::path& file, const BasicImage<std::uint8_t>& codes,
