@@ -181,7 +181,7 @@ TEST_CASE("Channels make layers by their prefix") {
     check_values(read_image(file, {.role = Role::data, .layer = "N.Z"}).image, display, display, 5);
     check_values(read_image(file, {.role = Role::data, .layer = "G"}).image, display, display, 1);
     const std::string message =
-        error_of(file, [&] { read_image(file, {.role = Role::data, .layer = "lihgt"}).image; });
+        error_of(file, [&] { read_image(file, {.role = Role::data, .layer = "lihgt"}); });
     CHECK(message.find("did you mean \"light\"") != std::string::npos);
     CHECK(message.find("light.id") != std::string::npos);
 }

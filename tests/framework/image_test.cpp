@@ -324,7 +324,7 @@ TEST_CASE("What is no image is refused") {
           != std::string::npos);
     CHECK(read_error("/dev/zero").find("larger") != std::string::npos);
     const auto file = directory / "a.png";
-    CHECK(error_of(file, [&] { read_image(file, {.role = Role::data, .layer = "Z"}).image; }).find("layers")
+    CHECK(error_of(file, [&] { read_image(file, {.role = Role::data, .layer = "Z"}); }).find("layers")
           != std::string::npos);
 }
 
