@@ -3,6 +3,8 @@
 #include <array>
 #include <cstdint>
 #include <cstring>
+#include <functional>
+#include <string>
 #include <utility>
 
 namespace postfx {
@@ -100,6 +102,14 @@ constexpr GLint tile_size_location = 0, first_location = 1;
 /// Beyond those of a pass's inputs.
 constexpr GLuint rectangles_unit = 16;
 
+ProgramSource source_of(std::string_view text, ProgramKind kind) {
+    ProgramSource source;
+    source.text = text;
+    source.kind = kind;
+    source.key = std::hash<std::string>{}(source.text);
+    return source;
+}
+
 } // namespace
 
 // Six vertices for each rectangle, not an instance: software rasterisers set up each instance as a draw of its own.
@@ -115,10 +125,15 @@ void main() {
 }
 )";
 
-TilePasses::TilePasses(const Plan& plan)
-    : list_program_(gl::make_compute_program(list_shader, "tile list")),
-      clear_program_(gl::make_program(tile_vertex_text, clear_shader, "tile clear")),
-      lists_(plan.passes.size()) {
+const std::vector<ProgramSource>& tile_programs() {
+    static const std::vector<ProgramSource> sources = {source_of(list_shader, ProgramKind::compute),
+                                                       source_of(clear_shader, ProgramKind::tiles)};
+    return sources;
+}
+
+TilePasses::TilePasses(const Plan& plan, ProgramCache& programs)
+    : list_program_(programs.get(tile_programs()[0], "tile list")),
+      clear_program_(programs.get(tile_programs()[1], "tile clear")), lists_(plan.passes.size()) {
     for (std::size_t i = 0; i < plan.passes.size(); ++i) {
         const Pass& pass = plan.passes[i];
         if (pass.where.kind == ImageRef::Kind::none) continue;
@@ -148,7 +163,7 @@ GLuint TilePasses::groups(const Pass& pass) {
 
 void TilePasses::list(std::size_t pass_index, GLuint mask, std::optional<GLintptr> command) const {
     const Lists& lists = *lists_[pass_index];
-    glUseProgram(list_program_.name());
+    glUseProgram(list_program_);
     glBindTextureUnit(0, mask);
     glBindSampler(0, 0);
     glBindBufferRange(GL_SHADER_STORAGE_BUFFER, 6, heads_.name(), lists.heads, sizeof(ListHeads));
@@ -164,7 +179,7 @@ void TilePasses::list(std::size_t pass_index, GLuint mask, std::optional<GLintpt
 void TilePasses::draw(const Pass& pass, std::size_t pass_index, GLuint program) const {
     glBindTextureUnit(rectangles_unit, lists_[pass_index]->view.name());
     glBindBuffer(GL_DRAW_INDIRECT_BUFFER, heads_.name());
-    draw_list(pass, *lists_[pass_index], 1, clear_program_.name());
+    draw_list(pass, *lists_[pass_index], 1, clear_program_);
     draw_list(pass, *lists_[pass_index], 0, program);
 }
 
