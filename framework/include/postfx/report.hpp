@@ -49,7 +49,7 @@ struct Report {
     std::string clock; ///< which clock the times come from, and why that one
     std::size_t texture_bytes = 0;
     std::vector<std::string> warnings;
-    std::optional<ProgramCount> programs; ///< absent: nothing was prepared
+    std::optional<ProgramCount> programs;                 ///< absent: nothing was prepared
     std::optional<std::vector<NonfiniteImage>> nonfinite; ///< in order of drawing; absent: was not watched
 };
 

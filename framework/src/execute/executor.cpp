@@ -218,9 +218,8 @@ ProgramCount count_programs(const Plan& plan, const ProgramCache& cache) {
     }
     ProgramCount count;
     count.all = static_cast<int>(sources.size());
-    count.compiled = static_cast<int>(std::count_if(sources.begin(), sources.end(), [&](const auto& source) {
-        return !cache.holds(*source.second);
-    }));
+    count.compiled = static_cast<int>(std::count_if(
+        sources.begin(), sources.end(), [&](const auto& source) { return !cache.holds(*source.second); }));
     return count;
 }
 

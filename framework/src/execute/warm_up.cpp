@@ -135,9 +135,8 @@ void WarmUp::leave(std::size_t pass_index) {
 
 int WarmUp::warmed() {
     const std::lock_guard lock(mutex_);
-    return static_cast<int>(std::count_if(units_.begin(), units_.end(), [](const Unit& unit) {
-        return unit.state == Unit::State::warmed;
-    }));
+    return static_cast<int>(std::count_if(
+        units_.begin(), units_.end(), [](const Unit& unit) { return unit.state == Unit::State::warmed; }));
 }
 
 std::optional<std::size_t> WarmUp::take_last() {

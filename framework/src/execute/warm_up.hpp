@@ -36,7 +36,8 @@ struct SmallPlan {
 
 /// To compile for `passes` of `plan` what drawing them needs: formats and whether sides are powers of two stay.
 /// `formats`: of the plan's attachments.
-SmallPlan small_plan(const Plan& plan, const std::vector<std::size_t>& passes, const std::vector<Format>& formats);
+SmallPlan small_plan(const Plan& plan, const std::vector<std::size_t>& passes,
+                     const std::vector<Format>& formats);
 
 class WarmUp {
 public:
