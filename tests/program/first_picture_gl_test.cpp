@@ -135,6 +135,12 @@ TEST_CASE("A second thread compiles what is drawn and nothing else, and changes 
         CHECK(one.at("warmed") == 0);
         CHECK(one.at("compiled") == two.at("compiled"));
         CHECK(file_bytes(directory / "one.png") == file_bytes(directory / "two.png"));
+        // Mesa writes its files on threads of its own, and what it has not written at the end of the process is lost: the
+        // next one compiles it again. What only one of the two compiles would come up every time.
+        for (int i = 0; i < 5 && with.files_of_driver() != without.files_of_driver(); ++i) {
+            with.programs(apply(directory / "in.ppm", directory / "two.png", plain_chain));
+            without.programs(apply(directory / "in.ppm", directory / "one.png", plain_chain), one_core);
+        }
         CHECK(with.files_of_driver() > 0);
         CHECK(with.files_of_driver() == without.files_of_driver());
     }
