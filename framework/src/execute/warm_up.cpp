@@ -1,12 +1,14 @@
 #include <execute/warm_up.hpp>
 
 #include <sched.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <bit>
 #include <exception>
 #include <map>
 #include <string>
+#include <system_error>
 #include <utility>
 
 namespace postfx {
@@ -84,6 +86,13 @@ gl::Texture texture_for(const StandIn& input) {
     return texture;
 }
 
+/// Where ours can't be, the driver's own cache beside it can't either, and everything would be compiled twice.
+bool can_be_written(const std::filesystem::path& directory) {
+    std::error_code error;
+    std::filesystem::create_directories(directory, error);
+    return ::access(directory.c_str(), W_OK) == 0;
+}
+
 int usable_cores() {
     cpu_set_t cores;
     return ::sched_getaffinity(0, sizeof(cores), &cores) == 0 ? CPU_COUNT(&cores) : 1;
@@ -100,7 +109,7 @@ SmallPlan small_plan(const Plan& plan, const std::vector<std::size_t>& passes,
 }
 
 bool WarmUp::helps(const ProgramCache& programs) {
-    return !programs.directory().empty() && gl::current_device().software && usable_cores() > 1;
+    return can_be_written(programs.directory()) && gl::current_device().software && usable_cores() > 1;
 }
 
 WarmUp::WarmUp(const Plan& plan, std::vector<Format> formats, std::filesystem::path directory)
@@ -113,7 +122,11 @@ WarmUp::WarmUp(const Plan& plan, std::vector<Format> formats, std::filesystem::p
         units_[found->second].passes.push_back(i);
         unit_of_pass_.push_back(found->second);
     }
-    thread_ = std::thread([this] { work(); });
+    try {
+        thread_ = std::thread([this] { work(); });
+    } catch (const std::system_error&) {
+        // No more threads to be had: the caller draws everything first.
+    }
 }
 
 WarmUp::~WarmUp() {
@@ -123,7 +136,7 @@ WarmUp::~WarmUp() {
             if (unit.state == Unit::State::open) unit.state = Unit::State::left;
         }
     }
-    thread_.join();
+    if (thread_.joinable()) thread_.join();
 }
 
 void WarmUp::leave(std::size_t pass_index) {
