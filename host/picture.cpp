@@ -35,10 +35,15 @@ std::filesystem::path program_cache() {
 
 } // namespace
 
-ChainRunner::ChainRunner(Chain chain, Facts facts)
+ChainRunner::ChainRunner(Chain chain, Facts facts, const std::map<std::string, Format>& formats)
     : chain_(std::move(chain)), facts_(std::move(facts)), plan_(planner_.plan(chain_, facts_)),
       executor_(program_cache()) {
-    executor_.prepare(plan_);
+    std::vector<Format> of_attachments;
+    if (!formats.empty()) {
+        for (const std::string& name : plan_.attachments)
+            of_attachments.push_back(formats.at(name));
+    }
+    executor_.prepare(plan_, of_attachments);
 }
 
 void ChainRunner::replan(const Facts& facts) {

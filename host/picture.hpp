@@ -20,7 +20,9 @@ using Textures = std::map<std::string, std::uint32_t>;
 /// Runs one chain on textures, planning again when facts change.
 class ChainRunner {
 public:
-    ChainRunner(Chain chain, Facts facts);
+    /// `formats`: of the attachments, by name. Given, and up to the first run, a second thread compiles too where that
+    /// helps (Executor::prepare).
+    ChainRunner(Chain chain, Facts facts, const std::map<std::string, Format>& formats = {});
 
     /// What the chain reads of the scene, decided before anything is rendered.
     const std::vector<std::string>& attachments() const { return plan_.attachments; }

@@ -81,7 +81,7 @@ public:
         frame.seed = seed_;
         const std::optional<MetBudget> budget =
             meet_budget(chain, facts, chain_options_.budget_source(), {upload, frame});
-        ChainRunner runner(std::move(chain), facts);
+        ChainRunner runner(std::move(chain), facts, formats_of(images));
         const Textures textures = upload(runner.attachments());
         runner.run(textures, frame, Timing::off, report_options_.watch());
         tell_lines(output.path.string(), write_picture(runner, output, written), false);
@@ -136,11 +136,21 @@ private:
         return facts;
     }
 
+    static Format format_of(const Image& image) {
+        return image.channels == 1 ? Format::r32f : Format::rgba32f;
+    }
+
+    static std::map<std::string, Format> formats_of(const std::map<std::string, Image>& images) {
+        std::map<std::string, Format> formats;
+        for (const auto& [name, image] : images)
+            formats[name] = format_of(image);
+        return formats;
+    }
+
     /// The texture's name; it is made when it holds nothing yet.
     static std::uint32_t uploaded_texture(gl::Texture& texture, const Image& image) {
         if (texture.name() == 0) {
-            texture =
-                gl::Texture(image.width, image.height, image.channels == 1 ? Format::r32f : Format::rgba32f);
+            texture = gl::Texture(image.width, image.height, format_of(image));
             texture.upload(image);
         }
         return texture.name();

@@ -77,7 +77,7 @@ public:
         const std::optional<MetBudget> budget =
             meet_budget(chain, facts, chain_options_.budget_source(),
                         trial_inputs(renderer, facts, scene_options_.time()));
-        ChainRunner runner(std::move(chain), facts);
+        ChainRunner runner(std::move(chain), facts, SceneRenderer::attachment_formats());
         ProgressBar progress("rendering", frames_);
         for (int i = 0; i < frames_; ++i) {
             render_frame(renderer, runner, bounds, i);

@@ -51,6 +51,15 @@ const std::vector<std::string>& SceneRenderer::attachment_names() {
     return names;
 }
 
+const std::map<std::string, Format>& SceneRenderer::attachment_formats() {
+    static const std::map<std::string, Format> formats = {{"color", Format::rgba16f},
+                                                          {"depth", Format::depth32f},
+                                                          {"normal", Format::rgba16f},
+                                                          {"emission", Format::rgba16f},
+                                                          {"ambient", Format::rgba16f}};
+    return formats;
+}
+
 std::uint32_t SceneFrame::texture(const std::string& name) const {
     for (const SceneAttachment& attachment : attachments) {
         if (attachment.name == name) return attachment.texture;

@@ -7,6 +7,7 @@
 #include <postfx/format.hpp>
 
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -64,6 +65,7 @@ public:
 
     /// What can be wanted.
     static const std::vector<std::string>& attachment_names();
+    static const std::map<std::string, Format>& attachment_formats();
 
 private:
     struct State;

@@ -189,6 +189,26 @@ TEST_CASE("two instances share one function and differ in their block") {
     CHECK(number_at<float>(plan.passes[0], 48) == 0.75f);
 }
 
+TEST_CASE("a parameter that a source does not name is no part of its program") {
+    Facts facts = facts_of();
+    for (const bool fold : {false, true}) {
+        facts.fold = fold;
+        Chain chain = chain_of({"blur"});
+        chain.find("blur")->set("radius", 2.0);
+        const Plan before = plan_of(chain, facts);
+        chain.find("blur")->set("radius", 3.0);
+        const Plan after = plan_of(chain, facts);
+        REQUIRE(names_of(before) == Names{"blur/across", "blur/down", "blur"});
+        CHECK(before.passes[0].program->key
+              != after.passes[0].program->key); // its loop is as long as the radius
+        CHECK(before.passes[2].program->key == after.passes[2].program->key);
+        const std::string& text = before.passes[2].program->text;
+        CHECK(count(text, "struct BlurParams {") == 1);
+        CHECK(count(text, "amount;") == 1);
+        CHECK(count(text, "radius") == 0);
+    }
+}
+
 TEST_CASE("different constants can't be fused, and the reason says which") {
     Chain chain = chain_of({"tint", "tint"});
     chain.find("tint_2")->set("mode", 1);

@@ -18,6 +18,7 @@ enum class ParameterKind { number, integer, toggle, choice, color };
 /// One parameter as declared by its effect.
 struct ParameterInfo {
     std::string id;
+    std::string glsl_name; ///< of the struct's member, or of the constant, in capitals
     ParameterKind kind = ParameterKind::number;
     std::string unit; ///< "m", "mm", "px", ... or ""
     std::string help;
@@ -49,6 +50,9 @@ struct SourceInfo {
     std::string path; ///< where it was at build time, may be empty
     std::string
         not_pointwise; ///< why it can't be a compose function; empty = nothing forbidden was found in it
+    /// For each parameter of the effect: is it named here, or in what this includes? Others are no part of its
+    /// programs, which so serve all of their values.
+    std::vector<bool> names{};
 };
 
 /// One effect as found. Immutable; shared by chains and plans that use it.

@@ -43,7 +43,15 @@ public:
 
     /// Compile and allocate what `plan` needs and make it current. If a shader fails, throws Error with
     /// effect, file and line, and the plan before stays current.
-    void prepare(const Plan& plan);
+    ///
+    /// `formats`: of the attachments, in the order of Plan::attachments. With them, programs that no cache holds are
+    /// compiled on a second thread too, up to the first run, where that helps: a software renderer, more than one
+    /// core, and a driver whose cache hands on what was compiled. The picture is the same.
+    void prepare(const Plan& plan, const std::vector<Format>& formats = {});
+
+    /// Have the driver compile the current plan's programs to the end, which many put off until the first draw: passes
+    /// are drawn as in run(), with rasterization off. `textures`: as in FrameInputs. Makes no picture.
+    void compile(const std::vector<std::uint32_t>& textures);
 
     /// Draw the current plan. Creates no GL object and allocates no heap memory once it has run twice after
     /// prepare(). Returns the GL name of the picture's texture: the executor's own, valid until the next

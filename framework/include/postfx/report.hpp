@@ -36,12 +36,20 @@ struct NonfiniteImage {
     bool made_here = false; ///< nothing that the pass read had any
 };
 
+/// Of one plan.
+struct ProgramCount {
+    int all = 0;
+    int compiled = 0; ///< of them: when the plan was prepared, neither the executor nor its cache held them
+    int warmed = 0;   ///< compiled to the end on a second thread
+};
+
 struct Report {
     std::vector<PlannedEffect> effects;
     std::vector<PassReport> passes;
     std::string clock; ///< which clock the times come from, and why that one
     std::size_t texture_bytes = 0;
     std::vector<std::string> warnings;
+    std::optional<ProgramCount> programs;                 ///< absent: nothing was prepared
     std::optional<std::vector<NonfiniteImage>> nonfinite; ///< in order of drawing; absent: was not watched
 };
 
@@ -50,8 +58,8 @@ Report describe(const Plan& plan);
 
 /// {"effects": [{"id", "name", "status", "moment", "kind", "reason"}], "passes": [{"name", "effects", "width",
 /// "height", "format", "reads", "condition", "drawn", "tiles", "tiles_drawn", "taps", "cpu_ms", "wall_ms",
-/// "gpu_ms"}], "clock", "texture_bytes", "warnings", "nonfinite": [{"name", "pixels", "x", "y", "made_here"}]}; what
-/// was not measured or watched is null.
+/// "gpu_ms"}], "clock", "texture_bytes", "programs": {"all", "compiled", "warmed"}, "warnings", "nonfinite": [{"name",
+/// "pixels", "x", "y", "made_here"}]}; what was not prepared, measured or watched is null.
 std::string report_json(const Report& report);
 /// The same for people.
 std::string report_text(const Report& report);

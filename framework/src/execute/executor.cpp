@@ -4,6 +4,7 @@
 #include <execute/program_cache.hpp>
 #include <execute/tap_counts.hpp>
 #include <execute/tile_passes.hpp>
+#include <execute/warm_up.hpp>
 #include <gl/clock.hpp>
 #include <gl/context.hpp>
 #include <gl/objects.hpp>
@@ -16,6 +17,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -65,6 +67,8 @@ struct Executor::State {
         std::optional<FrameDecisions> decisions; ///< if the plan has any
         std::optional<TilePasses> tiles;         ///< likewise
         std::optional<TapCounts> taps;           ///< if programs count them
+        ProgramCount programs;
+        std::unique_ptr<WarmUp> warm_up; ///< if there is one, until the first run is over
     };
 
     explicit State(std::filesystem::path cache)
@@ -75,6 +79,24 @@ struct Executor::State {
                    const std::vector<std::uint32_t>& attachments) const {
         return image.kind == ImageRef::Kind::attachment ? attachments[image.index]
                                                         : ready.targets[image.index]->name();
+    }
+
+    /// What all passes of a frame rely on.
+    void begin_frame(const FrameBlock& block) const {
+        set_pass_state();
+        glNamedBufferSubData(frame_buffer.name(), 0, sizeof(block), &block);
+        glBindBufferBase(GL_UNIFORM_BUFFER, 0, frame_buffer.name());
+        glBindVertexArray(vertex_array.name());
+        if (current.decisions) current.decisions->begin_frame();
+        if (current.tiles) current.tiles->begin_frame();
+        if (current.taps) current.taps->begin_frame();
+    }
+
+    /// The host's own draws must not sample through our sampler objects.
+    static void end_frame() {
+        for (GLuint unit = 0; unit < 16; ++unit)
+            glBindSampler(unit, 0);
+        glBindFramebuffer(GL_DRAW_FRAMEBUFFER, 0);
     }
 
     void execute(std::size_t index, const std::vector<std::uint32_t>& attachments) const {
@@ -186,6 +208,21 @@ bool has_tiles(const Plan& plan) {
                        [](const Pass& pass) { return pass.where.kind != ImageRef::Kind::none; });
 }
 
+ProgramCount count_programs(const Plan& plan, const ProgramCache& cache) {
+    std::map<std::uint64_t, const ProgramSource*> sources;
+    for (const Pass& pass : plan.passes)
+        sources[pass.program->key] = pass.program.get();
+    if (has_tiles(plan)) {
+        for (const ProgramSource& source : tile_programs())
+            sources[source.key] = &source;
+    }
+    ProgramCount count;
+    count.all = static_cast<int>(sources.size());
+    count.compiled = static_cast<int>(std::count_if(
+        sources.begin(), sources.end(), [&](const auto& source) { return !cache.holds(*source.second); }));
+    return count;
+}
+
 /// Same passes into the same targets: only numbers in the uniform blocks may differ.
 bool same_structure(const Plan& a, const Plan& b) {
     const auto same_target = [](const Target& x, const Target& y) {
@@ -208,7 +245,7 @@ Executor::~Executor() = default;
 Executor::Executor(Executor&&) noexcept = default;
 Executor& Executor::operator=(Executor&&) noexcept = default;
 
-void Executor::prepare(const Plan& plan) {
+void Executor::prepare(const Plan& plan, const std::vector<Format>& formats) {
     State& state = *state_;
     if (!state.current.passes.empty() && same_structure(plan, state.current.plan)) {
         for (std::size_t i = 0; i < plan.passes.size(); ++i) {
@@ -224,9 +261,11 @@ void Executor::prepare(const Plan& plan) {
 
     check_limits(plan, device_limits());
     State::Ready ready;
-    for (const Pass& pass : plan.passes) {
-        ready.passes.push_back({pass.name, state.programs.get(*pass.program, pass), {}, {}});
-    }
+    ready.programs = count_programs(plan, state.programs);
+    if (ready.programs.compiled > 0 && !formats.empty() && WarmUp::helps(state.programs))
+        ready.warm_up = std::make_unique<WarmUp>(plan, formats, state.programs.directory());
+    for (const Pass& pass : plan.passes)
+        ready.passes.push_back({pass.name, state.programs.get(*pass.program, pass.name), {}, {}});
     // A copy of the list: whatever fails below, the plan before keeps its targets.
     std::vector<TexturePtr> old = state.current.targets;
     for (std::size_t i = 0; i < plan.targets.size(); ++i) {
@@ -245,7 +284,7 @@ void Executor::prepare(const Plan& plan) {
         if (!bytes.empty()) ready.passes[i].block = gl::make_buffer(bytes.size(), bytes.data());
     }
     if (!plan.decisions.empty()) ready.decisions.emplace(plan);
-    if (has_tiles(plan)) ready.tiles.emplace(plan);
+    if (has_tiles(plan)) ready.tiles.emplace(plan, state.programs);
     if (counts_taps(plan)) ready.taps.emplace(plan.passes.size());
     ready.plan = plan;
     state.current = std::move(ready);
@@ -273,14 +312,7 @@ std::uint32_t Executor::run(const FrameInputs& inputs, Timing timing, Watch watc
     if (watch == Watch::nonfinite && !state.watch) state.watch.emplace(plan);
     state.last_watch = watch;
 
-    const FrameBlock block = block_of(plan, inputs);
-    glNamedBufferSubData(state.frame_buffer.name(), 0, sizeof(block), &block);
-    glBindBufferBase(GL_UNIFORM_BUFFER, 0, state.frame_buffer.name());
-    glBindVertexArray(state.vertex_array.name());
-    if (state.current.decisions) state.current.decisions->begin_frame();
-    if (state.current.tiles) state.current.tiles->begin_frame();
-    if (state.current.taps) state.current.taps->begin_frame();
-
+    state.begin_frame(block_of(plan, inputs));
     if (watch == Watch::nonfinite) {
         state.watch->begin_frame();
         for (GLuint attachment : inputs.textures)
@@ -294,6 +326,7 @@ std::uint32_t Executor::run(const FrameInputs& inputs, Timing timing, Watch watc
     }
     for (std::size_t i = 0; i < plan.passes.size(); ++i) {
         const gl::HostTime start = timing == Timing::profile ? gl::HostTime::now() : gl::HostTime{};
+        if (state.current.warm_up) state.current.warm_up->leave(i);
         state.execute(i, inputs.textures);
         if (timing == Timing::profile) {
             glFinish();
@@ -311,18 +344,30 @@ std::uint32_t Executor::run(const FrameInputs& inputs, Timing timing, Watch watc
         }
     }
     if (timing == Timing::gpu) state.ring->end_frame();
-    // The host's own draws must not sample through our sampler objects.
-    for (GLuint unit = 0; unit < 16; ++unit)
-        glBindSampler(unit, 0);
-    glBindFramebuffer(GL_DRAW_FRAMEBUFFER, 0);
+    State::end_frame();
+    if (state.current.warm_up) {
+        state.current.programs.warmed = state.current.warm_up->warmed();
+        state.current.warm_up.reset();
+    }
 
     state.picture = state.texture(state.current, plan.picture, inputs.textures);
     return state.picture;
 }
 
+void Executor::compile(const std::vector<std::uint32_t>& textures) {
+    const State& state = *state_;
+    state.begin_frame({});
+    glEnable(GL_RASTERIZER_DISCARD);
+    for (std::size_t i = 0; i < state.current.plan.passes.size(); ++i)
+        state.execute(i, textures);
+    glDisable(GL_RASTERIZER_DISCARD);
+    State::end_frame();
+}
+
 Report Executor::report() const {
     const State& state = *state_;
     Report report = describe(state.current.plan);
+    report.programs = state.current.programs;
     if (state.current.decisions && state.picture)
         tell_decisions(state.current.decisions->read(), state.current.plan, report);
     if (state.current.tiles && state.picture) {

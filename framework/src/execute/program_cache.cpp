@@ -73,7 +73,7 @@ gl::Program link(const ProgramSource& source) {
 
 } // namespace
 
-GLuint ProgramCache::get(const ProgramSource& source, const Pass& pass) {
+GLuint ProgramCache::get(const ProgramSource& source, const std::string& pass) {
     gl::Program& program = programs_[source.key];
     if (program) return program.name();
     program = load(source);
@@ -82,11 +82,17 @@ GLuint ProgramCache::get(const ProgramSource& source, const Pass& pass) {
         program = link(source);
     } catch (const Error& error) {
         Place place = error.place();
-        place.effect = pass.name;
+        place.effect = pass;
         throw Error(place, error.message());
     }
     save(source, program);
     return program.name();
+}
+
+bool ProgramCache::holds(const ProgramSource& source) const {
+    if (programs_.contains(source.key)) return true;
+    std::error_code error; // what can't be looked at is not there
+    return !directory_.empty() && std::filesystem::exists(file_of(source), error);
 }
 
 std::filesystem::path ProgramCache::file_of(const ProgramSource& source) const {

@@ -19,7 +19,11 @@ public:
 
     /// The linked program, compiled at most once. `pass` names it in messages. Throws Error with the author's
     /// file:line.
-    GLuint get(const ProgramSource& source, const Pass& pass);
+    GLuint get(const ProgramSource& source, const std::string& pass);
+    /// Is it here or in the directory?
+    bool holds(const ProgramSource& source) const;
+    /// Empty also where the driver gives no binaries.
+    const std::filesystem::path& directory() const { return directory_; }
 
 private:
     std::filesystem::path file_of(const ProgramSource& source) const;

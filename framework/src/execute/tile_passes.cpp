@@ -3,6 +3,8 @@
 #include <array>
 #include <cstdint>
 #include <cstring>
+#include <functional>
+#include <string>
 #include <utility>
 
 namespace postfx {
@@ -34,35 +36,35 @@ void main() {
     ivec2 size = textureSize(u_mask, 0), blocks = (size + 7) / 8;
     ivec2 block = ivec2(gl_GlobalInvocationID.x % uint(blocks.x), gl_GlobalInvocationID.x / uint(blocks.x));
     if (block.y >= blocks.y) return;
-    // Bits of 4x4 tiles each: those that there are, and those of either list.
-    uint present[4], listed[2][4];
-    uvec2 count = uvec2(0u);
-    for (int quarter = 0; quarter < 4; ++quarter) {
-        present[quarter] = listed[0][quarter] = 0u;
-        for (int i = 0; i < 16; ++i) {
-            ivec2 tile = 8 * block + 4 * ivec2(quarter & 1, quarter >> 1) + ivec2(i & 3, i >> 2);
-            if (any(greaterThanEqual(tile, size))) continue;
-            present[quarter] |= 1u << i;
-            if (texelFetch(u_mask, tile, 0).r != 0.0) listed[0][quarter] |= 1u << i;
-        }
-        if (2 * bitCount(listed[0][quarter]) > bitCount(present[quarter])) listed[0][quarter] = present[quarter];
-        listed[1][quarter] = present[quarter] & ~listed[0][quarter];
-        count += uvec2(bitCount(listed[0][quarter]), bitCount(listed[1][quarter]));
+    // Bits of 4x4 tiles each. One loop that is too long to be written out: nested ones are, and compile for longer than
+    // most effects.
+    uvec4 present = uvec4(0u), drawn = uvec4(0u);
+    for (int i = 0; i < 64; ++i) {
+        int quarter = i >> 4;
+        ivec2 tile = 8 * block + 4 * ivec2(quarter & 1, quarter >> 1) + ivec2(i & 3, i >> 2 & 3);
+        if (any(greaterThanEqual(tile, size))) continue;
+        present[quarter] |= 1u << (i & 15);
+        if (texelFetch(u_mask, tile, 0).r != 0.0) drawn[quarter] |= 1u << (i & 15);
     }
-    for (uint list = 0u; list < 2u; ++list) {
-        if (count[list] == count.x + count.y) add(list, 8 * block, 8u, count[list]);
-        if (count[list] == 0u || count[list] == count.x + count.y) continue;
-        for (int quarter = 0; quarter < 4; ++quarter) {
-            ivec2 corner = 8 * block + 4 * ivec2(quarter & 1, quarter >> 1);
-            uint bits = listed[list][quarter];
-            if (bits == 0u) continue;
-            if (bits == present[quarter]) {
-                add(list, corner, 4u, uint(bitCount(bits)));
-                continue;
-            }
-            for (int i = 0; i < 16; ++i) {
-                if ((bits >> i & 1u) != 0u) add(list, corner + ivec2(i & 3, i >> 2), 1u, 1u);
-            }
+    int drawn_count = 0, count = 0;
+    for (int quarter = 0; quarter < 4; ++quarter) {
+        if (2 * bitCount(drawn[quarter]) > bitCount(present[quarter])) drawn[quarter] = present[quarter];
+        drawn_count += bitCount(drawn[quarter]);
+        count += bitCount(present[quarter]);
+    }
+    if (drawn_count == 0 || drawn_count == count) {
+        add(drawn_count == 0 ? 1u : 0u, 8 * block, 8u, uint(count));
+        return;
+    }
+    for (int i = 0; i < 8; ++i) {
+        uint list = uint(i & 1);
+        int quarter = i >> 1;
+        ivec2 corner = 8 * block + 4 * ivec2(quarter & 1, quarter >> 1);
+        uint bits = list == 0u ? drawn[quarter] : present[quarter] & ~drawn[quarter];
+        bool whole = bits == present[quarter];
+        for (uint left = whole ? min(bits, 1u) : bits; left != 0u; left &= left - 1u) {
+            int first = findLSB(left);
+            add(list, corner + ivec2(first & 3, first >> 2), whole ? 4u : 1u, whole ? uint(bitCount(bits)) : 1u);
         }
     }
 }
@@ -100,6 +102,14 @@ constexpr GLint tile_size_location = 0, first_location = 1;
 /// Beyond those of a pass's inputs.
 constexpr GLuint rectangles_unit = 16;
 
+ProgramSource source_of(std::string_view text, ProgramKind kind) {
+    ProgramSource source;
+    source.text = text;
+    source.kind = kind;
+    source.key = std::hash<std::string>{}(source.text);
+    return source;
+}
+
 } // namespace
 
 // Six vertices for each rectangle, not an instance: software rasterisers set up each instance as a draw of its own.
@@ -115,10 +125,15 @@ void main() {
 }
 )";
 
-TilePasses::TilePasses(const Plan& plan)
-    : list_program_(gl::make_compute_program(list_shader, "tile list")),
-      clear_program_(gl::make_program(tile_vertex_text, clear_shader, "tile clear")),
-      lists_(plan.passes.size()) {
+const std::vector<ProgramSource>& tile_programs() {
+    static const std::vector<ProgramSource> sources = {source_of(list_shader, ProgramKind::compute),
+                                                       source_of(clear_shader, ProgramKind::tiles)};
+    return sources;
+}
+
+TilePasses::TilePasses(const Plan& plan, ProgramCache& programs)
+    : list_program_(programs.get(tile_programs()[0], "tile list")),
+      clear_program_(programs.get(tile_programs()[1], "tile clear")), lists_(plan.passes.size()) {
     for (std::size_t i = 0; i < plan.passes.size(); ++i) {
         const Pass& pass = plan.passes[i];
         if (pass.where.kind == ImageRef::Kind::none) continue;
@@ -148,7 +163,7 @@ GLuint TilePasses::groups(const Pass& pass) {
 
 void TilePasses::list(std::size_t pass_index, GLuint mask, std::optional<GLintptr> command) const {
     const Lists& lists = *lists_[pass_index];
-    glUseProgram(list_program_.name());
+    glUseProgram(list_program_);
     glBindTextureUnit(0, mask);
     glBindSampler(0, 0);
     glBindBufferRange(GL_SHADER_STORAGE_BUFFER, 6, heads_.name(), lists.heads, sizeof(ListHeads));
@@ -164,7 +179,7 @@ void TilePasses::list(std::size_t pass_index, GLuint mask, std::optional<GLintpt
 void TilePasses::draw(const Pass& pass, std::size_t pass_index, GLuint program) const {
     glBindTextureUnit(rectangles_unit, lists_[pass_index]->view.name());
     glBindBuffer(GL_DRAW_INDIRECT_BUFFER, heads_.name());
-    draw_list(pass, *lists_[pass_index], 1, clear_program_.name());
+    draw_list(pass, *lists_[pass_index], 1, clear_program_);
     draw_list(pass, *lists_[pass_index], 0, program);
 }
 

@@ -1,6 +1,7 @@
 // Passes that are drawn only in the tiles of a mask: the GPU lists the tiles and draws as many rectangles.
 #pragma once
 
+#include <execute/program_cache.hpp>
 #include <gl/objects.hpp>
 
 #include <postfx/plan.hpp>
@@ -14,10 +15,13 @@ namespace postfx {
 /// How a tile becomes a rectangle of the target: vertex shader of every program that is drawn in tiles.
 extern const char* const tile_vertex_text;
 
+/// The programs that every plan with tiles needs besides those of its passes.
+const std::vector<ProgramSource>& tile_programs();
+
 /// The tile lists of one plan. [GL thread]
 class TilePasses {
 public:
-    explicit TilePasses(const Plan& plan);
+    TilePasses(const Plan& plan, ProgramCache& programs);
 
     /// Forget the lists of the frame before.
     void begin_frame() const;
@@ -44,7 +48,7 @@ private:
     };
     void draw_list(const Pass& pass, const Lists& lists, GLint list, GLuint program) const;
 
-    gl::Program list_program_, clear_program_;
+    GLuint list_program_, clear_program_;
     gl::Buffer heads_; ///< draw commands and counts of all lists
     std::vector<std::byte> fresh_heads_;
     std::vector<std::optional<Lists>> lists_; ///< per pass

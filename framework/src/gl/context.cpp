@@ -141,7 +141,8 @@ struct HeadlessContext::State {
     EGLDisplay display = EGL_NO_DISPLAY;
     EGLContext context = EGL_NO_CONTEXT;
 
-    State(const Platform& platform, bool debug) {
+    /// `load` GL's functions too?
+    State(const Platform& platform, bool debug, bool load) {
         const auto get_display = egl_function<PFNEGLGETPLATFORMDISPLAYEXTPROC>("eglGetPlatformDisplayEXT");
         if (!get_display) throw Error("EGL has no eglGetPlatformDisplayEXT");
         display = get_display(platform.kind, platform.native, nullptr);
@@ -158,7 +159,8 @@ struct HeadlessContext::State {
         context = create_context(display, config, debug);
         if (context == EGL_NO_CONTEXT) throw Error(egl_failure("eglCreateContext"));
         try {
-            make_current(platform);
+            make_current();
+            if (load) load_and_check(platform);
         } catch (...) {
             destroy();
             throw;
@@ -169,10 +171,12 @@ struct HeadlessContext::State {
     State& operator=(const State&) = delete;
 
 private:
-    void make_current(const Platform& platform) {
+    void make_current() const {
         if (!eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, context)) {
             throw Error(egl_failure("eglMakeCurrent"));
         }
+    }
+    static void load_and_check(const Platform& platform) {
         const std::string failure = load_failure(eglGetProcAddress);
         if (!failure.empty()) throw Error(failure);
         const DeviceInfo found = current_device();
@@ -191,7 +195,7 @@ HeadlessContext::HeadlessContext(bool debug) {
     std::string reasons;
     for (const Platform& platform : platforms()) {
         try {
-            state_ = std::make_unique<State>(platform, debug);
+            state_ = std::make_unique<State>(platform, debug, true);
             device_ = current_device();
             device_.platform = platform.name;
             if (debug) enable_debug_output();
@@ -202,6 +206,24 @@ HeadlessContext::HeadlessContext(bool debug) {
     }
     if (reasons.empty()) reasons = "EGL lists no device; ";
     throw Error(fmt::format("no OpenGL 4.5 without a display; {}{}", reasons, what_to_install));
+}
+
+HeadlessContext::HeadlessContext(const DeviceInfo& like) {
+    for (const Platform& platform : platforms()) {
+        try {
+            state_ = std::make_unique<State>(platform, false, false);
+        } catch (const Error&) {
+            continue; // this platform has none; the next may
+        }
+        device_ = current_device();
+        device_.platform = platform.name;
+        if (device_.vendor == like.vendor && device_.renderer == like.renderer
+            && device_.version == like.version) {
+            return;
+        }
+        state_.reset();
+    }
+    throw Error(fmt::format("no other context of \"{}\" without a display", like.renderer));
 }
 
 HeadlessContext::~HeadlessContext() = default;

@@ -30,6 +30,9 @@ void load_functions(FunctionLoader loader);
 class HeadlessContext {
 public:
     explicit HeadlessContext(bool debug = false);
+    /// Another one of the device that `like` describes, for another thread. GL's functions are loaded already: they
+    /// are the process's, and other threads may be calling them. Throws Error where there is no such device.
+    explicit HeadlessContext(const DeviceInfo& like);
     ~HeadlessContext();
     HeadlessContext(const HeadlessContext&) = delete;
     HeadlessContext& operator=(const HeadlessContext&) = delete;

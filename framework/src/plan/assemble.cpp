@@ -18,11 +18,6 @@
 namespace postfx {
 namespace {
 
-std::string upper(std::string text) {
-    std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return std::toupper(c); });
-    return text;
-}
-
 /// "glow_down" -> "GlowDown".
 std::string pascal(std::string_view snake) {
     std::string name;
@@ -351,12 +346,13 @@ Stage make_stage(const ChainEntry& entry, const RecordedPass& pass) {
     stage.source = pass.source;
     for (std::size_t i = 0; i < entry.effect->parameters.size(); ++i) {
         const ParameterInfo& parameter = entry.effect->parameters[i];
+        if (!pass.source->names[i]) continue;
         if (parameter.constant) {
-            stage.constants.push_back({upper(entry.effect->id + "_" + parameter.id),
-                                       parameter.kind != ParameterKind::number, 1, entry.values[i]});
+            stage.constants.push_back(
+                {parameter.glsl_name, parameter.kind != ParameterKind::number, 1, entry.values[i]});
         } else {
-            stage.members.push_back({parameter.id, std::string(parameter_type(parameter)), entry.values[i],
-                                     parameter.components()});
+            stage.members.push_back({parameter.glsl_name, std::string(parameter_type(parameter)),
+                                     entry.values[i], parameter.components()});
         }
     }
     for (const RecordedNumber& value : pass.values) {

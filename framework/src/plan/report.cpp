@@ -95,6 +95,13 @@ std::string taps_text(const PassReport& pass) {
                        static_cast<double>(*pass.taps) / (static_cast<double>(pass.width) * pass.height));
 }
 
+std::string programs_text(const ProgramCount& programs) {
+    std::string text = fmt::format("programs  {}", programs.all);
+    if (programs.compiled > 0) text += fmt::format(", {} never compiled before", programs.compiled);
+    if (programs.warmed > 0) text += fmt::format(", {} of all on a second thread", programs.warmed);
+    return text + "\n";
+}
+
 /// What an effect cost: its own passes, and those that it shares with others.
 std::string cost_text(const Report& report, const PlannedEffect& effect) {
     double own = 0, shared = 0;
@@ -176,6 +183,12 @@ std::string report_json(const Report& report) {
     }
     json["clock"] = report.clock;
     json["texture_bytes"] = report.texture_bytes;
+    json["programs"] = nullptr;
+    if (report.programs) {
+        json["programs"] = {{"all", report.programs->all},
+                            {"compiled", report.programs->compiled},
+                            {"warmed", report.programs->warmed}};
+    }
     json["warnings"] = report.warnings;
     json["nonfinite"] = nullptr;
     if (report.nonfinite) {
@@ -216,6 +229,7 @@ std::string report_text(const Report& report) {
     }
     text += fmt::format("textures  {:.1f} MiB\nclock     {}\n",
                         static_cast<double>(report.texture_bytes) / (1024 * 1024), report.clock);
+    if (report.programs) text += programs_text(*report.programs);
     for (const std::string& warning : report.warnings)
         text += fmt::format("warning   {}\n", warning);
     if (report.nonfinite && report.nonfinite->empty()) text += "non-finite  none in any image\n";

@@ -1,6 +1,7 @@
 #include <plugin/declarations.hpp>
 
 #include <plugin/pointwise.hpp>
+#include <plugin/uncomment.hpp>
 
 #include <postfx/error.hpp>
 
@@ -8,6 +9,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cmath>
 #include <limits>
 
@@ -128,6 +130,49 @@ void check_stride(const char* what, std::uint32_t count, std::uint32_t stride, s
         complain("{} have a stride of {} bytes, at least {} expected", what, stride, least);
 }
 
+std::string glsl_name(const std::string& effect, const ParameterInfo& parameter) {
+    if (!parameter.constant) return parameter.id;
+    std::string name = effect + "_" + parameter.id;
+    std::transform(name.begin(), name.end(), name.begin(), [](unsigned char c) { return std::toupper(c); });
+    return name;
+}
+
+bool has_word(std::string_view text, std::string_view word) {
+    for (std::size_t at = text.find(word); at != std::string_view::npos; at = text.find(word, at + 1)) {
+        const std::size_t end = at + word.size();
+        const bool begins = at == 0 || !is_word_character(text[at - 1]);
+        const bool ends = end == text.size() || !is_word_character(text[end]);
+        if (begins && ends) return true;
+    }
+    return false;
+}
+
+/// `source` and what it includes of its module, directly or not.
+std::vector<const SourceInfo*> with_included(const SourceInfo& source, const std::vector<SourceInfo>& all) {
+    std::vector<const SourceInfo*> found = {&source};
+    for (std::size_t i = 0; i < found.size(); ++i) {
+        for (const SourceInfo& other : all) {
+            const bool is_quoted =
+                found[i]->text.find(fmt::format("\"{}\"", other.name)) != std::string::npos;
+            if (is_quoted && std::find(found.begin(), found.end(), &other) == found.end())
+                found.push_back(&other);
+        }
+    }
+    return found;
+}
+
+std::vector<bool> names_of(const SourceInfo& source, const std::vector<SourceInfo>& all,
+                           const std::vector<ParameterInfo>& parameters) {
+    const std::vector<const SourceInfo*> texts = with_included(source, all);
+    std::vector<bool> names;
+    for (const ParameterInfo& parameter : parameters) {
+        names.push_back(std::any_of(texts.begin(), texts.end(), [&](const SourceInfo* text) {
+            return has_word(text->text, parameter.glsl_name);
+        }));
+    }
+    return names;
+}
+
 } // namespace
 
 std::vector<SourceInfo> read_sources(const postfx_module& module, const std::filesystem::path& origin) {
@@ -176,8 +221,11 @@ EffectInfo read_effect(const postfx_effect& declared, const std::vector<SourceIn
         ParameterInfo parameter =
             read_parameter(abi_element(effect.parameters, effect.parameter_stride, i), complain);
         if (info.find_parameter(parameter.id)) complain("declares the parameter {} twice", parameter.id);
+        parameter.glsl_name = glsl_name(info.id, parameter);
         info.parameters.push_back(std::move(parameter));
     }
+    for (SourceInfo& source : info.sources)
+        source.names = names_of(source, sources, info.parameters);
     for (std::uint32_t i = 0; i < effect.read_count; ++i) {
         info.reads.push_back(text_or_empty(effect.reads[i]));
         if (std::find(known_attachments.begin(), known_attachments.end(), info.reads.back())
