@@ -101,12 +101,11 @@ const char* kind_of(std::string_view bytes) {
 StoredPicture stored_picture(const ImageSource& source) {
     const Path& file = source.name;
     const std::string_view kind = kind_of(source.bytes);
+    if (const std::string problem = problem_of(source.bytes); !problem.empty()) fail(file, problem);
     Head head;
     if (!read_head(source.bytes, head))
         fail(file, fmt::format("truncated, damaged or not supported {} ({})", kind, stbi_failure_reason()));
     check_size(file, head.width, head.height);
-    if (const std::string problem = kind == "PSD" ? psd_problem(source.bytes) : ""; !problem.empty())
-        fail(file, problem);
     StoredPicture picture;
     if (psd_bits(source.bytes) == 16) {
         read_codes<stbi_us>(file, source.bytes, stbi_load_16_from_callbacks, picture);

@@ -219,11 +219,13 @@ int psd_bits(std::string_view bytes) {
     return bytes.starts_with("8BPS") && big(bytes, 22, 2) == 16 ? 16 : 8;
 }
 
-std::string psd_problem(std::string_view bytes) {
-    const bool packed = big(bytes, psd_section(bytes, 3), 2) != 0;
-    return psd_bits(bytes) == 16 && packed
-               ? "a PSD of 16 bits that is run-length coded; save it as TIFF or PNG"
-               : "";
+std::string problem_of(std::string_view bytes) {
+    constexpr std::uint32_t bmp_runs_8 = 1, bmp_runs_4 = 2;
+    const std::uint32_t compression = bytes.starts_with("BM") ? little(bytes, bmp_header + 16) : 0;
+    if (compression == bmp_runs_8 || compression == bmp_runs_4)
+        return "a BMP that is run-length coded (RLE); save it without, or as PNG";
+    const bool packed = psd_bits(bytes) == 16 && big(bytes, psd_section(bytes, 3), 2) != 0;
+    return packed ? "a PSD of 16 bits that is run-length coded (RLE); save it as TIFF or PNG" : "";
 }
 
 } // namespace postfx::formats

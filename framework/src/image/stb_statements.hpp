@@ -19,7 +19,7 @@ void take_psd_statements(std::string_view bytes, StoredPicture& picture);
 /// 16, where stb_image would give 8 bits of them; 8 for other kinds.
 int psd_bits(std::string_view bytes);
 
-/// Why stb_image would read this PSD wrongly; "" if it would not.
-std::string psd_problem(std::string_view bytes);
+/// Why stb_image would read this BMP or PSD wrongly or not at all; "" if nothing is known against it.
+std::string problem_of(std::string_view bytes);
 
 } // namespace postfx::formats
