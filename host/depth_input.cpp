@@ -57,6 +57,20 @@ bool same_shape(const Image& a, const Image& b) {
     return std::abs(across * b.height - a.height) < 1 || std::abs(up * b.width - a.width) < 1;
 }
 
+/// A depth shown in colours is none: which of its channels would be?
+void expect_grey(const std::string& name, const ImageFile& depth) {
+    if (depth.image.channels < 3) return;
+    // A grey JPEG with channels of colour comes apart by a code or two.
+    const float rounding = depth.coding.numbers == Coding::Numbers::codes ? 2.5f / 255 : 0;
+    for (std::size_t i = 0; i < depth.image.values.size();
+         i += static_cast<std::size_t>(depth.image.channels)) {
+        const float* sample = &depth.image.values[i];
+        for (int channel = 1; channel < 3; ++channel)
+            if (std::abs(sample[channel] - sample[0]) > rounding)
+                throw Error(Place{.file = name}, "has three different channels, so it is no depth");
+    }
+}
+
 /// Raw samples as what is affine over the picture on planes, 0 for the sky, or back.
 Image converted(Image image, const Camera& camera, bool back) {
     for (float& value : image.values) {
@@ -237,6 +251,7 @@ DepthSamples DepthOptions::read(const std::string& name, const ImageFile& depth,
         throw Error(Place{.file = name}, fmt::format("is {}x{}, which is not the shape of the picture, {}x{}",
                                                      width, height, picture.width, picture.height));
     }
+    expect_grey(name, depth);
     DepthSamples result;
     bool any_nothing = false;
     result.samples = raw_samples(depth, picture, camera, any_nothing);

@@ -125,8 +125,16 @@ private:
     ImageFile measurement(Role role, const std::string& name) {
         ImageFile map = file_in(role, name);
         const int orientation = input_.color.shot.orientation;
-        if (map.shot.orientation == 1
-            && belonging_of(map.image, width(), height(), orientation) == Belonging::stored) {
+        if (map.shot.orientation != 1 || orientation == 1) return map;
+        const Belonging belonging = belonging_of(map.image, width(), height(), orientation);
+        if (belonging == Belonging::unknown)
+            tell_or_refuse(
+                name,
+                {fmt::format("the picture was turned (EXIF orientation {}), and nothing says whether "
+                             "this was made of it before or after; taken as made after",
+                             orientation)},
+                options_.strict_, false);
+        if (belonging == Belonging::stored) {
             const bool codes = map.coding.numbers == Coding::Numbers::codes;
             map.image = role == Role::normal ? oriented_normals(
                             map.image, orientation, codes ? VectorCoding::halves : VectorCoding::as_they_are)

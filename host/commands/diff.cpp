@@ -15,6 +15,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <limits>
 #include <optional>
 
@@ -97,12 +98,13 @@ Image absolute_difference(const Image& a, const Image& b) {
 
 /// A PNG shows the colours' difference times `gain` as it is, without sRGB encoding: twice the difference,
 /// twice the code.
-void write_difference_png(const std::string& file, const Image& difference, double gain) {
+void write_difference_png(const std::string& file, const std::string& kind, const Image& difference,
+                          double gain) {
     const Image rgb = reshaped(difference, 3, false);
     std::vector<std::uint8_t> codes;
     for (float value : rgb.values)
         codes.push_back(static_cast<std::uint8_t>(std::lround(255 * std::min(1.0, value * gain))));
-    write_codes(file, {rgb.width, rgb.height, 3, std::move(codes)});
+    write_codes(file, {rgb.width, rgb.height, 3, std::move(codes)}, {.kind = kind});
 }
 
 /// Light in float64, whatever the files hold; alpha is never encoded.
@@ -119,11 +121,11 @@ Image64 light(const Image& image, bool codes) {
 }
 
 /// .png in heat colours, else the errors themselves in one channel.
-void write_map(const std::string& file, const Image& map) {
-    if (is_display_kind(file))
-        write_codes(file, {map.width, map.height, 3, heat_colors(map)});
+void write_map(const std::string& file, const std::string& kind, const Image& map) {
+    if (is_display_kind(file, kind))
+        write_codes(file, {map.width, map.height, 3, heat_colors(map)}, {.kind = kind});
     else
-        write_image(file, map);
+        write_image(file, map, {.kind = kind});
 }
 
 /// All that is measured.
@@ -157,6 +159,11 @@ public:
         app.add_option("--min-psnr", min_psnr_, "Status 0 when the PSNR is at least this [dB]");
         app.add_option("--layer", layer_, "Compare this layer of two EXR files instead of the colour")
             ->type_name("NAME");
+        app.add_option(
+               "--format", format_,
+               "Kind of the picture of -o - or --map -, standard output, where text goes to stderr then")
+            ->type_name("KIND")
+            ->default_str("");
         CLI::Option* flip =
             app.add_flag("--flip", flip_, "Also LDR-FLIP: what a viewer sees who flips between the pictures");
         app.add_option(
@@ -202,22 +209,36 @@ public:
     }
 
     Status run() override {
-        for (const std::string& file : {output_, map_})
-            if (!file.empty()) check_writable_kind(file);
+        check_outputs();
         const Pair pair = read_pair(a_, b_, layer_);
         const Measured measured = measure(pair);
         const bool passes = passed(measured.difference);
         if (json_) {
-            fmt::print("{}\n", json(pair, measured, passes).dump(2));
+            fmt::print(text_output(), "{}\n", json(pair, measured, passes).dump(2));
         } else {
             print(pair, measured, passes);
         }
         if (!output_.empty()) write_difference(pair, measured.difference);
-        if (!map_.empty()) write_map(map_, measured.flip->map);
+        if (!map_.empty()) write_map(map_, kind_for(map_), measured.flip->map);
         return passes ? Status::success : Status::differs;
     }
 
 private:
+    void check_outputs() const {
+        if (output_ == "-" && map_ == "-") throw Error("-o - and --map - can't both be standard output");
+        if ((output_ == "-" || map_ == "-") && format_.empty())
+            throw Error("--format is needed for a picture on standard output, which has no ending: png, jpg, "
+                        "exr, hdr or pfm");
+        for (const std::string& file : {output_, map_})
+            if (!file.empty()) check_writable_kind(file, kind_for(file));
+    }
+
+    /// Of other files the ending says it.
+    std::string kind_for(const std::string& file) const { return file == "-" ? format_ : ""; }
+
+    /// Where no picture goes.
+    std::FILE* text_output() const { return output_ == "-" || map_ == "-" ? stderr : stdout; }
+
     Measured measure(const Pair& pair) const {
         Measured measured{compare(pair.a, pair.b, peak_),
                           relative_error(light(pair.b, pair.codes), light(pair.a, pair.codes)), std::nullopt};
@@ -298,7 +319,7 @@ private:
         rows.push_back({"compared", pair.codes ? "8-bit codes / 255" : "linear values"});
         for (const std::string& note : pair.notes)
             rows.push_back({"note", note});
-        fmt::print("{}\n{}",
+        fmt::print(text_output(), "{}\n{}",
                    bounded ? (passes ? "within the bounds" : "beyond the bounds")
                            : (passes ? "equal" : "different"),
                    text_table(rows, 2));
@@ -316,16 +337,17 @@ private:
 
     void write_difference(const Pair& pair, const Difference& difference) const {
         const Image image = absolute_difference(pair.a, pair.b);
-        if (!is_display_kind(output_)) {
-            write_image(output_, image);
+        const std::string kind = kind_for(output_);
+        if (!is_display_kind(output_, kind)) {
+            write_image(output_, image, {.kind = kind});
             return;
         }
         const double gain = gain_.value_or(difference.max_abs > 0 ? 1 / difference.max_abs : 1);
-        write_difference_png(output_, image, gain);
-        if (!json_) fmt::print("  {} shows the difference times {:.4g}\n", output_, gain);
+        write_difference_png(output_, kind, image, gain);
+        if (!json_) fmt::print(text_output(), "  {} shows the difference times {:.4g}\n", output_, gain);
     }
 
-    std::string a_, b_, output_, layer_, map_;
+    std::string a_, b_, output_, layer_, map_, format_;
     std::optional<double> gain_, max_abs_, min_psnr_;
     double peak_ = 1, ppd_ = default_pixels_per_degree;
     bool json_ = false, flip_ = false;

@@ -62,6 +62,10 @@ public:
             ->capture_default_str();
         app.add_option("-o,--output", output_, "Picture: .exr, .pfm, .hdr (scene-linear) or .png")
             ->type_name("FILE");
+        app.add_option("--format", format_,
+                       "Kind of the picture of -o -, standard output, where text goes to stderr then")
+            ->type_name("KIND")
+            ->default_str("");
         app.add_option("--store", store_, "Where sums are kept; truths/ in the user's cache without")
             ->type_name("DIR")
             ->default_str("");
@@ -83,7 +87,10 @@ public:
     }
 
     Status run() override {
-        if (!output_.empty()) check_writable_kind(output_);
+        if (output_ == "-" && format_.empty())
+            throw Error("--format is needed for a picture on standard output, which has no ending: png, jpg, "
+                        "exr, hdr or pfm");
+        if (!output_.empty()) check_writable_kind(output_, kind());
         const Catalog catalog = catalog_options_.load();
         const TruthRequest request = read_request(catalog);
         const RegisteredTruth& registered = find_truth(request.entry.effect->id, kind_);
@@ -103,6 +110,9 @@ public:
     }
 
 private:
+    /// Of other files the ending says it.
+    std::string kind() const { return output_ == "-" ? format_ : ""; }
+
     TruthRequest read_request(const Catalog& catalog) const {
         Chain chain;
         parse_chain_entry(effect_text(), "EFFECT", catalog, chain);
@@ -131,13 +141,14 @@ private:
     }
 
     void tell(const TruthResult& result, const TruthRequest& request, const fs::path& sums) const {
-        if (!output_.empty()) write_image(output_, convert<float>(result.picture));
+        if (!output_.empty()) write_image(output_, convert<float>(result.picture), {.kind = kind()});
+        std::FILE* const text = output_ == "-" ? stderr : stdout;
         if (!json_) {
-            fmt::print("{} of {}, {}: {}\n", request.entry.effect->id, request.scene.name, kind_,
+            fmt::print(text, "{} of {}, {}: {}\n", request.entry.effect->id, request.scene.name, kind_,
                        result.description);
-            fmt::print("  own error {:.3g}, root mean square {:.6g}\n", result.own_error,
+            fmt::print(text, "  own error {:.3g}, root mean square {:.6g}\n", result.own_error,
                        result.root_mean_square);
-            if (!output_.empty()) fmt::print("  wrote {}\n", output_);
+            if (!output_.empty()) fmt::print(text, "  wrote {}\n", output_);
             return;
         }
         const Json json = {
@@ -152,11 +163,11 @@ private:
             {"sums", sums.string()},
             {"output", output_.empty() ? Json() : Json(output_)},
         };
-        fmt::print("{}\n", json.dump(2));
+        fmt::print(text, "{}\n", json.dump(2));
     }
 
     CatalogOptions catalog_options_;
-    std::string scene_, effect_, kind_ = "scene", size_ = "480x270", output_, store_;
+    std::string scene_, effect_, kind_ = "scene", size_ = "480x270", output_, store_, format_;
     std::vector<std::string> values_;
     double time_ = 0;
     int samples_ = 0, scene_samples_ = 4;

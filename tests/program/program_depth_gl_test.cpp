@@ -248,6 +248,21 @@ TEST_CASE("Depth of a scene reduced 4 to 8 times keeps its edges") {
     }
 }
 
+TEST_CASE("Depth of three different channels is refused, whatever the format") {
+    const TemporaryDirectory scratch;
+    const std::string picture = (scratch / "picture.pfm").string(), depth = (scratch / "depth.pfm").string();
+    write_image(picture, Image(8, 6, 3, 0.5f));
+    Image colors(8, 6, 3, 5);
+    const auto run = [&] {
+        write_image(depth, colors);
+        return run_program({"apply", "--color", picture, "--depth", depth, "--chain", "none", "-o",
+                            (scratch / "out.pfm").string()});
+    };
+    CHECK(run().status == 0);
+    colors.at(3, 2, 1) = 6;
+    check_refused(run(), "three different channels");
+}
+
 TEST_CASE("Numbers that are none, and options that contradict each other, are refused") {
     const Case test;
     const auto refused = [&](std::vector<std::string> arguments, const std::string& words) {

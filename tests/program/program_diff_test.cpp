@@ -217,3 +217,18 @@ TEST_CASE("diff refuses what can't be compared") {
     check_refused(run_program({"diff", a, a, "-o", (scratch / "difference.txt").string()}), "difference.txt");
     check_refused(run_program({"diff", a}), "B");
 }
+
+TEST_CASE("diff writes a picture to standard output, and its words to standard error then") {
+    const TemporaryDirectory scratch;
+    const std::string a = png(scratch, "a.png", 3, 100, 100), b = png(scratch, "b.png", 3, 100, 120);
+    const std::string file = (scratch / "difference.png").string();
+    run_program({"diff", a, b, "-o", file});
+    const Outcome outcome = run_program({"diff", a, b, "-o", "-", "--format", "png"});
+    CHECK(outcome.status == 1);
+    CHECK(read_image(ImageSource{"-", outcome.out}).image.values == read_image(file).image.values);
+    CHECK_THAT(outcome.err, Catch::Contains("different"));
+    const Outcome map = run_program({"diff", a, b, "--flip", "--map", "-", "--format", "png"});
+    CHECK_THAT(map.out, Catch::StartsWith("\x89PNG"));
+    check_refused(run_program({"diff", a, b, "-o", "-"}), "--format");
+    check_refused(run_program({"diff", a, b, "--flip", "-o", "-", "--map", "-", "--format", "png"}), "both");
+}

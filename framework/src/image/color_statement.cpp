@@ -119,7 +119,7 @@ ColorStatement color_of_cicp(const std::string& where, int primaries, int transf
     ColorStatement statement;
     if (space == std::end(known_primaries) || !curve) {
         statement.warnings.push_back(fmt::format(
-            "{}: primaries {} with transfer {} are not known; taken as sRGB", where, primaries, transfer));
+            "{}: primaries {} with transfer {} are not known; not followed", where, primaries, transfer));
         return statement;
     }
     statement.to_light = curve->to_light;
@@ -135,18 +135,35 @@ ColorStatement color_of_icc(std::string_view bytes, int channels) {
     ColorStatement statement;
     std::shared_ptr<const IccProfile> profile = IccProfile::open(bytes);
     if (!profile) {
-        statement.warnings.emplace_back("its ICC profile is damaged or of no known kind; taken as sRGB");
+        statement.warnings.emplace_back("its ICC profile is damaged or of no known kind; not followed");
         return statement;
     }
     if (profile->channels() != channels) {
         statement.warnings.push_back(
-            fmt::format("its ICC profile \"{}\" is for {} channels where the picture has {}; taken as sRGB",
+            fmt::format("its ICC profile \"{}\" is for {} channels where the picture has {}; not followed",
                         profile->name(), profile->channels(), channels));
         return statement;
     }
     if (profile->is_srgb()) return statement;
     statement.honoured.push_back(fmt::format("ICC profile \"{}\"", profile->name()));
     statement.profile = std::move(profile);
+    return statement;
+}
+
+ColorStatement color_of_colorimetry(const std::string& where, std::optional<double> gamma,
+                                    const std::optional<Chromaticities>& space) {
+    ColorStatement statement;
+    if (gamma) {
+        statement.to_light = power(*gamma);
+        statement.honoured.push_back(fmt::format("{}: gamma {:.4g}", where, *gamma));
+    }
+    if (!space || is_rec709(*space)) return statement;
+    statement.to_rec709 = matrix_to_rec709(*space, Adaptation::bradford);
+    if (statement.to_rec709)
+        statement.honoured.push_back(fmt::format("{}: primaries, converted to Rec. 709", where));
+    else
+        statement.warnings.push_back(
+            fmt::format("{}: its primaries make no colour space; not followed", where));
     return statement;
 }
 

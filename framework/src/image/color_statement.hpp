@@ -33,6 +33,11 @@ ColorStatement color_of_cicp(const std::string& where, int primaries, int transf
 /// sRGB and a warning; one that is sRGB itself, whatever its name, leaves sRGB.
 ColorStatement color_of_icc(std::string_view profile, int channels);
 
+/// By an exponent from codes to light (nothing: sRGB's curve) and by primaries (nothing: Rec. 709), as EXIF and TIFF state
+/// them. `where` begins what is told. Primaries that make no colour space leave Rec. 709 and a warning.
+ColorStatement color_of_colorimetry(const std::string& where, std::optional<double> gamma,
+                                    const std::optional<Chromaticities>& space);
+
 /// Adobe RGB (1998), which EXIF can name without a profile.
 ColorStatement adobe_rgb_color();
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 
 namespace postfx {
@@ -12,11 +13,15 @@ enum Tag : std::uint32_t {
     make_tag = 0x010f,
     model_tag = 0x0110,
     orientation_tag = 0x0112,
+    transfer_function_tag = 0x012d,
+    white_point_tag = 0x013e,
+    primaries_tag = 0x013f,
     exif_directory_tag = 0x8769,
     focal_length_tag = 0x920a,
     color_space_tag = 0xa001,
     interoperability_directory_tag = 0xa005,
     focal_length_35mm_tag = 0xa405,
+    gamma_tag = 0xa500,
     interoperability_index_tag = 0x0001,
 };
 
@@ -66,6 +71,15 @@ public:
         if (field.type != 5 || !(above > 0) || !(below > 0)) return std::nullopt;
         return above / below;
     }
+    /// x and y, the `index`th pair of RATIONALs; NaN for what is none.
+    Chromaticity chromaticity(const Field& field, std::uint32_t index) {
+        const auto ratio = [&](std::uint32_t i) {
+            const std::size_t at = field.at + 8 * std::size_t{i};
+            const bool there = field.type == 5 && i < field.count;
+            return there ? number(at, 4) / static_cast<double>(number(at + 4, 4)) : std::nan("");
+        };
+        return {ratio(2 * index), ratio(2 * index + 1)};
+    }
     std::string text(const Field& field) {
         if (field.at > bytes_.size() || field.count > bytes_.size() - field.at) {
             good_ = false;
@@ -93,7 +107,14 @@ void read_exif_directory(Tiff& tiff, std::size_t at, ExifData& exif) {
         if (field.tag == focal_length_tag) exif.focal_length_mm = tiff.positive_ratio(field);
         if (field.tag == focal_length_35mm_tag && tiff.integer(field) > 0)
             exif.focal_length_35mm = tiff.integer(field);
-        if (field.tag == color_space_tag) exif.uncalibrated = tiff.integer(field) == 0xffff;
+        if (field.tag == gamma_tag) exif.gamma = tiff.positive_ratio(field);
+        if (field.tag == color_space_tag) {
+            const std::uint32_t space = tiff.integer(field);
+            exif.srgb = space == 1;
+            exif.uncalibrated = space == 0xffff;
+            // The standard has no 2, but cameras and exiftool do.
+            exif.adobe_rgb = exif.adobe_rgb || space == 2;
+        }
         if (field.tag == interoperability_directory_tag)
             read_interoperability(tiff, tiff.integer(field), exif);
     }
@@ -111,12 +132,22 @@ ExifData read_exif(std::string_view bytes) {
         exif.damaged = true;
         return exif;
     }
+    Chromaticities space = rec709_chromaticities;
     for (const Field& field : tiff.directory(tiff.number(4, 4))) {
+        if (field.tag == white_point_tag) space.white = tiff.chromaticity(field, 0);
+        if (field.tag == primaries_tag) {
+            space.red = tiff.chromaticity(field, 0);
+            space.green = tiff.chromaticity(field, 1);
+            space.blue = tiff.chromaticity(field, 2);
+            exif.primaries = space;
+        }
+        if (field.tag == transfer_function_tag) exif.transfer_function = true;
         if (field.tag == orientation_tag) exif.orientation = static_cast<int>(tiff.integer(field));
         if (field.tag == make_tag) exif.make = tiff.text(field);
         if (field.tag == model_tag) exif.model = tiff.text(field);
         if (field.tag == exif_directory_tag) read_exif_directory(tiff, tiff.integer(field), exif);
     }
+    if (exif.primaries) exif.primaries->white = space.white;
     // Cameras write 0 for "unknown".
     if (exif.orientation < 1 || exif.orientation > 8) exif.orientation = 1;
     exif.damaged = !tiff.good();

@@ -71,6 +71,9 @@ constexpr std::array conventions = {
     Convention{Role::normal, 1, "normal"},
     Convention{Role::normal, 1, "normals"},
     Convention{Role::normal, 1, "nn"},
+    Convention{Role::normal, 1, "shnormal"}, // Mitsuba, shading normals
+    Convention{Role::normal, 1, "shadingnormal"},
+    Convention{Role::normal, 1, "shadingnormals"},
     // Unreal, Redshift, RenderMan.
     Convention{Role::normal, 2, "worldnormal"},
     Convention{Role::normal, 2, "worldnormals"},

@@ -2,6 +2,7 @@
 // stb_image's takes the end of a file for zeros: a truncated picture reads as a whole one, or forever.
 #include <image/color_space.hpp>
 #include <image/formats.hpp>
+#include <image/stored_picture.hpp>
 
 #include <fmt/format.h>
 
@@ -110,7 +111,8 @@ bool all_positive(const std::vector<double>& numbers) {
     return !numbers.empty() && std::all_of(numbers.begin(), numbers.end(), [](double x) { return x > 0; });
 }
 
-void take_format(const Path& file, const std::string& value, Statements& said) {
+void take_format(const Path& file, std::string value, Statements& said) {
+    std::erase(value, ' ');
     said.xyz = value == "32-bit_rle_xyze";
     if (!said.xyz && value != "32-bit_rle_rgbe")
         fail(file, "its HDR pixels are neither RGBE nor XYZE but " + value);
@@ -315,6 +317,7 @@ Decoded decode_hdr(const ImageSource& source, const ImageRequest& request) {
     file.image = read_pixels(resolution_of(source.name, bytes.line()), bytes);
     file.warnings = said.warnings;
     if (said.pixel_aspect != 1) file.shot.pixel_aspect_ratio = 1 / said.pixel_aspect;
+    if (request.role == Role::color) tell_pixel_shape(file);
     if (!is_light(request.role)) return decoded;
     undo_exposure(said, file);
     convert_primaries(said, request.adaptation, file);
@@ -322,7 +325,8 @@ Decoded decode_hdr(const ImageSource& source, const ImageRequest& request) {
 }
 
 bool recognises_hdr(std::string_view bytes) {
-    return bytes.starts_with("#?RADIANCE") || bytes.starts_with("#?RGBE");
+    // Behind "#?" stands the name of whatever program wrote it.
+    return bytes.starts_with("#?");
 }
 
 ImageFile read_hdr(const ImageSource& source, const ImageRequest& request) {

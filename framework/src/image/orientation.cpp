@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <utility>
 
 namespace postfx {
@@ -63,7 +64,13 @@ Belonging belonging_of(const Image& map, int width, int height, int orientation)
     if (!exchanges_sides(orientation) || width == height) return Belonging::unknown;
     if (map.width == width && map.height == height) return Belonging::turned;
     if (map.width == height && map.height == width) return Belonging::stored;
-    return Belonging::unknown;
+    // Depth of fewer pixels has the shape of one of both, but for the whole pixels that its sides are rounded to.
+    const auto has_shape_of = [&](double across, double up) {
+        return std::abs(map.width * up / across - map.height) < 1
+               || std::abs(map.height * across / up - map.width) < 1;
+    };
+    if (has_shape_of(width, height)) return Belonging::turned;
+    return has_shape_of(height, width) ? Belonging::stored : Belonging::unknown;
 }
 
 } // namespace postfx

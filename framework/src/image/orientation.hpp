@@ -22,9 +22,9 @@ Image oriented_normals(const Image& stored, int orientation, VectorCoding coding
 
 /// Does a map belong to a photograph as it was stored, before it was turned?
 enum class Belonging {
-    turned,  ///< it has the size that the photograph has now
-    stored,  ///< it has the size that the photograph had before: it must be turned as well
-    unknown, ///< both sizes are the same, or it has neither
+    turned,  ///< it has the size, or else the shape, that the photograph has now
+    stored,  ///< it has those that the photograph had before: it must be turned as well
+    unknown, ///< both are the same, or it has neither
 };
 
 /// `width`, `height`: of the photograph after turning by `orientation`.

@@ -21,7 +21,8 @@ public:
 
     template<class Number>
     Number next(const char* what) {
-        const std::string_view word = next_word();
+        std::string_view word = next_word();
+        if (word.starts_with('+')) word.remove_prefix(1); // which from_chars does not know
         Number number{};
         const auto [end, problem] = std::from_chars(word.data(), word.data() + word.size(), number);
         if (problem != std::errc() || end != word.data() + word.size())

@@ -175,7 +175,8 @@ StoredPicture stored_png(const ImageSource& source) {
     picture.warnings = png.warnings;
     picture.color = color_of(png);
     note_statements(png, picture);
-    if (const auto* exif = png.find("eXIf")) take_exif(picture, *exif, true);
+    const bool color_is_said = png.find("cICP") || png.find("iCCP") || png.find("sRGB") || png.find("gAMA");
+    if (const auto* exif = png.find("eXIf")) take_exif(picture, *exif, color_is_said);
     read_pixels(source.name, source.bytes, picture, static_cast<int>(png.width),
                 static_cast<int>(png.height));
     return picture;

@@ -44,9 +44,15 @@ std::optional<std::string> inflated(std::string_view deflated) {
 }
 
 /// The third edition, 11.3.2.6: primaries, transfer, matrix (0), full range.
-ColorStatement color_of_cicp_chunk(std::string_view data, int bits) {
+/// Nothing but a warning for code points that are not known.
+std::optional<ColorStatement> color_of_cicp_chunk(std::string_view data, int bits,
+                                                  std::vector<std::string>& warnings) {
     const auto byte = [&](std::size_t at) { return static_cast<int>(big_endian(data, at, 1)); };
     ColorStatement statement = color_of_cicp("PNG cICP", byte(0), byte(1), byte(3) != 0, bits);
+    if (!statement.warnings.empty()) {
+        warnings.insert(warnings.end(), statement.warnings.begin(), statement.warnings.end());
+        return std::nullopt;
+    }
     if (byte(2) != 0)
         statement.warnings.push_back(
             fmt::format("PNG cICP: matrix {} makes no sense for RGB; not followed", byte(2)));
@@ -108,10 +114,14 @@ const std::string_view* whole_chunk(const PngChunks& png, std::string_view type,
 
 ColorStatement said_color(const PngChunks& png, ColorStatement statement) {
     if (const auto* cicp = whole_chunk(png, "cICP", 4, statement))
-        return color_of_cicp_chunk(*cicp, png.bits);
+        if (auto by_code = color_of_cicp_chunk(*cicp, png.bits, statement.warnings))
+            return *std::move(by_code);
     if (png.find("iCCP")) {
         const bool grey = (png.color_type & 2) == 0;
-        return color_of_icc(icc_profile_of(png).value_or(""), grey ? 1 : 3);
+        const ColorStatement by_profile = color_of_icc(icc_profile_of(png).value_or(""), grey ? 1 : 3);
+        if (by_profile.warnings.empty()) return by_profile;
+        statement.warnings.insert(statement.warnings.end(), by_profile.warnings.begin(),
+                                  by_profile.warnings.end());
     }
     if (png.find("sRGB")) return statement;
     if (const auto* gamma = whole_chunk(png, "gAMA", 4, statement)) take_gamma(*gamma, statement);

@@ -1,10 +1,12 @@
 // What models bring and nothing else here reads: TGA, BMP and PSD, by stb_image. It believes every size and takes
 // the end of a file for zeros or for whatever memory held, so sizes are asked first and it is watched while it reads.
 #include <image/formats.hpp>
+#include <image/stb_statements.hpp>
 #include <image/stored_picture.hpp>
 
 #include <fmt/format.h>
 
+#include <cstdlib>
 #include <cstring>
 #include <memory>
 
@@ -67,8 +69,11 @@ struct Head {
 
 bool read_head(std::string_view bytes, Head& head) {
     WatchedBytes input(bytes);
-    return stbi_info_from_callbacks(&callbacks, &input, &head.width, &head.height, &head.channels) != 0
-           && !input.overrun();
+    if (!stbi_info_from_callbacks(&callbacks, &input, &head.width, &head.height, &head.channels))
+        return false;
+    // A BMP whose rows come from the top says so by its sign.
+    head.height = std::abs(head.height);
+    return !input.overrun();
 }
 
 template<class Code, class Load>
@@ -95,13 +100,14 @@ const char* kind_of(std::string_view bytes) {
 
 StoredPicture stored_picture(const ImageSource& source) {
     const Path& file = source.name;
+    const std::string_view kind = kind_of(source.bytes);
+    if (const std::string problem = problem_of(source.bytes); !problem.empty()) fail(file, problem);
     Head head;
     if (!read_head(source.bytes, head))
-        fail(file, fmt::format("truncated or damaged {}", kind_of(source.bytes)));
+        fail(file, fmt::format("truncated, damaged or not supported {} ({})", kind, stbi_failure_reason()));
     check_size(file, head.width, head.height);
     StoredPicture picture;
-    WatchedBytes input(source.bytes);
-    if (stbi_is_16_bit_from_callbacks(&callbacks, &input)) {
+    if (psd_bits(source.bytes) == 16) {
         read_codes<stbi_us>(file, source.bytes, stbi_load_16_from_callbacks, picture);
         picture.coding.bits = 16;
         picture.largest = 65535;
@@ -109,6 +115,10 @@ StoredPicture stored_picture(const ImageSource& source) {
         read_codes<stbi_uc>(file, source.bytes, stbi_load_from_callbacks, picture);
     }
     if (picture.samples.channels % 2 == 0) picture.coding.alpha = Coding::Alpha::straight;
+    const auto take = kind == "BMP"   ? take_bmp_statements
+                      : kind == "PSD" ? take_psd_statements
+                                      : take_tga_statements;
+    take(source.bytes, picture);
     return picture;
 }
 

@@ -111,13 +111,44 @@ void take_exif(StoredPicture& picture, std::string_view tiff, bool color_is_said
     note_exif(exif, picture.shot);
     for (auto& attribute : attributes_of(exif))
         picture.attributes.push_back(std::move(attribute));
-    if (color_is_said) return;
-    if (exif.adobe_rgb)
+    if (color_is_said || exif.srgb) return;
+    if (exif.adobe_rgb) {
         picture.color = adobe_rgb_color();
-    else if (exif.uncalibrated)
+        return;
+    }
+    picture.color = color_of_colorimetry("EXIF", exif.gamma, exif.primaries);
+    if (exif.transfer_function)
+        picture.color.warnings.emplace_back("EXIF: its TransferFunction is not followed; taken as sRGB's");
+    else if (exif.uncalibrated && picture.color.is_plain_srgb())
         picture.color.warnings.emplace_back(
             "EXIF says that its colours are not sRGB, and nothing says what they are; "
             "taken as sRGB");
+}
+
+void divide_codes_by_alpha(StoredPicture& picture) {
+    constexpr double finer = 65535;
+    const auto channels = static_cast<std::size_t>(picture.samples.channels);
+    for (std::size_t i = 0; i < picture.samples.values.size(); i += channels) {
+        const double alpha = picture.samples.values[i + channels - 1] / picture.largest;
+        for (std::size_t channel = 0; channel < channels; ++channel) {
+            float& sample = picture.samples.values[i + channel];
+            const double divisor = channel + 1 < channels && alpha > 0 ? alpha : 1;
+            sample =
+                static_cast<float>(std::round(std::min(1.0, sample / picture.largest / divisor) * finer));
+        }
+    }
+    picture.largest = finer;
+    picture.coding.bits = 16;
+    picture.coding.alpha = Coding::Alpha::straight;
+}
+
+void tell_pixel_shape(ImageFile& file) {
+    // Densities are whole numbers, so that equal ones may differ by rounding.
+    constexpr double rounding = 1e-3;
+    const double ratio = file.shot.pixel_aspect_ratio.value_or(1);
+    if (std::abs(ratio - 1) > rounding)
+        file.warnings.push_back(fmt::format(
+            "pixel aspect ratio {:.4g}: pixels are not square; effects take them for square", ratio));
 }
 
 ImageFile as_asked(StoredPicture picture, const ImageRequest& request) {
@@ -148,6 +179,7 @@ ImageFile as_asked(StoredPicture picture, const ImageRequest& request) {
             file.shot.pixel_aspect_ratio = 1 / *file.shot.pixel_aspect_ratio;
     }
     file.image = std::move(picture.samples);
+    if (request.role == Role::color) tell_pixel_shape(file);
     return file;
 }
 

@@ -33,6 +33,12 @@ struct StoredPicture {
 /// Take what EXIF says of the shot and of the orientation; its colour space only where `color` says nothing.
 void take_exif(StoredPicture& picture, std::string_view tiff, bool color_is_said);
 
+/// Codes that are multiplied by their alpha become those of straight alpha: only light can be multiplied by it.
+void divide_codes_by_alpha(StoredPicture& picture);
+
+/// A warning where the pixels of a picture are not square.
+void tell_pixel_shape(ImageFile& file);
+
 /// Light by the colour statement, measurements and textures by dividing; turned as the camera was held, but for a
 /// texture.
 ImageFile as_asked(StoredPicture picture, const ImageRequest& request);

@@ -88,6 +88,10 @@ struct Layout {
     bool planar = false, tiled = false;
     std::uint32_t block_width = 0, block_height = 0; ///< of a tile or a strip
 
+    bool is_lab() const {
+        return photometric == PHOTOMETRIC_CIELAB || photometric == PHOTOMETRIC_ICCLAB
+               || photometric == PHOTOMETRIC_ITULAB;
+    }
     bool is_float() const { return format == SAMPLEFORMAT_IEEEFP; }
     std::size_t sample_bytes() const { return bits / 8u; }
     /// Channels that lie together.
@@ -101,6 +105,12 @@ struct Layout {
     }
 };
 
+/// 1 to 8, as EXIF has them.
+std::uint16_t orientation_of(TIFF* tiff) {
+    const auto orientation = field<std::uint16_t>(tiff, TIFFTAG_ORIENTATION, ORIENTATION_TOPLEFT);
+    return orientation >= 1 && orientation <= 8 ? orientation : std::uint16_t{ORIENTATION_TOPLEFT};
+}
+
 Layout layout_of(const Path& file, TIFF* tiff) {
     Layout layout;
     layout.width = field<std::uint32_t>(tiff, TIFFTAG_IMAGEWIDTH, 0);
@@ -113,6 +123,8 @@ Layout layout_of(const Path& file, TIFF* tiff) {
     layout.planar =
         field<std::uint16_t>(tiff, TIFFTAG_PLANARCONFIG, PLANARCONFIG_CONTIG) == PLANARCONFIG_SEPARATE;
     layout.tiled = TIFFIsTiled(tiff) != 0;
+    if (layout.format != SAMPLEFORMAT_UINT && layout.format != SAMPLEFORMAT_VOID && !layout.is_float())
+        fail(file, "a TIFF of signed or complex numbers, expected unsigned ones or floats");
     if (layout.channels > 32)
         fail(file, fmt::format("a TIFF of {} channels, expected at most 32", layout.channels));
     if (layout.tiled) {
@@ -178,6 +190,7 @@ Channels channels_of(TIFF* tiff, const Layout& layout) {
             channels.others = true;
         }
     }
+    channels.others = channels.others || layout.channels > channels.colors + count;
     return channels;
 }
 
@@ -252,23 +265,6 @@ void read_blocks(const Path& file, TIFF* tiff, const Input& input, const Layout&
             }
 }
 
-/// Codes that are multiplied by their alpha become those of straight alpha: only light can be multiplied by it.
-void divide_by_alpha(StoredPicture& picture) {
-    constexpr double finer = 65535;
-    const auto channels = static_cast<std::size_t>(picture.samples.channels);
-    for (std::size_t i = 0; i < picture.samples.values.size(); i += channels) {
-        const double alpha = picture.samples.values[i + channels - 1] / picture.largest;
-        for (std::size_t channel = 0; channel < channels; ++channel) {
-            float& sample = picture.samples.values[i + channel];
-            const double divisor = channel + 1 < channels && alpha > 0 ? alpha : 1;
-            sample =
-                static_cast<float>(std::round(std::min(1.0, sample / picture.largest / divisor) * finer));
-        }
-    }
-    picture.largest = finer;
-    picture.coding.bits = 16;
-}
-
 void read_plain(const Path& file, TIFF* tiff, const Input& input, const Layout& layout,
                 StoredPicture& picture) {
     const Channels channels = channels_of(tiff, layout);
@@ -291,38 +287,61 @@ void read_plain(const Path& file, TIFF* tiff, const Input& input, const Layout& 
     if (channels.alpha < 0) return;
     picture.coding.alpha = channels.premultiplied ? Coding::Alpha::premultiplied : Coding::Alpha::straight;
     if (!channels.premultiplied || layout.is_float()) return;
-    divide_by_alpha(picture);
-    picture.coding.alpha = Coding::Alpha::straight;
+    divide_codes_by_alpha(picture);
 }
 
-/// By libtiff: 8-bit RGBA, alpha premultiplied, bottom row first.
+/// By libtiff: 8-bit RGBA, alpha premultiplied.
 void read_converted(const Path& file, TIFF* tiff, const Input& input, const Layout& layout,
                     StoredPicture& picture) {
     std::array<char, 1024> reason{};
     if (!TIFFRGBAImageOK(tiff, reason.data()))
         fail(file, fmt::format("a TIFF of no known kind ({})", reason.data()));
     std::vector<std::uint32_t> codes(std::size_t{layout.width} * layout.height);
-    if (!TIFFReadRGBAImageOriented(tiff, layout.width, layout.height, codes.data(), ORIENTATION_BOTLEFT, 1))
+    // Asked for the file's own orientation it mirrors nothing: it would leave out what exchanges the sides.
+    if (!TIFFReadRGBAImageOriented(tiff, layout.width, layout.height, codes.data(), orientation_of(tiff), 1))
         fail(file, fmt::format("truncated or damaged TIFF ({})", input.message));
     picture.samples = Image(static_cast<int>(layout.width), static_cast<int>(layout.height), 3);
     for (std::size_t i = 0; i < codes.size(); ++i) {
-        picture.samples.values[3 * i] = static_cast<float>(TIFFGetR(codes[i]));
-        picture.samples.values[3 * i + 1] = static_cast<float>(TIFFGetG(codes[i]));
-        picture.samples.values[3 * i + 2] = static_cast<float>(TIFFGetB(codes[i]));
+        const auto x = static_cast<int>(i % layout.width), y = static_cast<int>(i / layout.width);
+        float* to = picture.samples.pixel(x, picture.samples.height - 1 - y);
+        to[0] = static_cast<float>(TIFFGetR(codes[i]));
+        to[1] = static_cast<float>(TIFFGetG(codes[i]));
+        to[2] = static_cast<float>(TIFFGetB(codes[i]));
     }
+    if (layout.is_lab()) picture.warnings.emplace_back("its CIELAB colours were brought to sRGB of 8 bits");
     if (layout.bits > 8)
         picture.warnings.push_back(fmt::format("its {} bits were brought to 8", layout.bits));
+}
+
+/// Without an ICC profile: TIFF 6.0, section 20, "RGB Image Colorimetry".
+ColorStatement colorimetry_of(TIFF* tiff) {
+    const float *white = nullptr, *primaries = nullptr;
+    std::optional<Chromaticities> space;
+    if (TIFFGetField(tiff, TIFFTAG_PRIMARYCHROMATICITIES, &primaries)) {
+        space = rec709_chromaticities;
+        space->red = {primaries[0], primaries[1]};
+        space->green = {primaries[2], primaries[3]};
+        space->blue = {primaries[4], primaries[5]};
+        if (TIFFGetField(tiff, TIFFTAG_WHITEPOINT, &white)) space->white = {white[0], white[1]};
+    }
+    ColorStatement color = color_of_colorimetry("TIFF", std::nullopt, space);
+    const std::uint16_t *red = nullptr, *green = nullptr, *blue = nullptr;
+    if (TIFFGetField(tiff, TIFFTAG_TRANSFERFUNCTION, &red, &green, &blue))
+        color.warnings.emplace_back("its TransferFunction is not followed; taken as sRGB's");
+    return color;
 }
 
 void take_statements(TIFF* tiff, const Layout& layout, StoredPicture& picture) {
     std::uint32_t size = 0;
     const char* profile = nullptr;
-    if (TIFFGetField(tiff, TIFFTAG_ICCPROFILE, &size, &profile) && layout.is_plain())
-        picture.color = color_of_icc({profile, size}, picture.color_channels());
+    if (TIFFGetField(tiff, TIFFTAG_ICCPROFILE, &size, &profile)) {
+        // Lab is no device's, so no profile is for it; libtiff has converted it.
+        if (!layout.is_lab()) picture.color = color_of_icc({profile, size}, picture.color_channels());
+    } else {
+        picture.color = colorimetry_of(tiff);
+    }
     if (picture.color.profile) picture.attributes.emplace_back("ICC profile", picture.color.profile->name());
-    const auto orientation = field<std::uint16_t>(tiff, TIFFTAG_ORIENTATION, ORIENTATION_TOPLEFT);
-    // libtiff's conversion has mirrored, but not transposed.
-    if (layout.is_plain() && orientation >= 1 && orientation <= 8) picture.orientation = orientation;
+    picture.orientation = orientation_of(tiff);
     float across = 0, down = 0;
     if (TIFFGetField(tiff, TIFFTAG_XRESOLUTION, &across) && TIFFGetField(tiff, TIFFTAG_YRESOLUTION, &down)
         && across > 0 && down > 0 && across != down)
