@@ -133,7 +133,7 @@ private:
                 {fmt::format("the picture was turned (EXIF orientation {}), and nothing says whether "
                              "this was made of it before or after; taken as made after",
                              orientation)},
-                options_.strict_, false);
+                options_.strict_);
         if (belonging == Belonging::stored) {
             const bool codes = map.coding.numbers == Coding::Numbers::codes;
             map.image = role == Role::normal ? oriented_normals(
