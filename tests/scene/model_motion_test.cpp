@@ -167,7 +167,8 @@ TEST_CASE("a skin and its animation in Collada, with a camera and a light") {
         std::vector<float> result;
         for (std::size_t node = 0; node < scene.nodes.size(); ++node) {
             for (const Part& part : scene.nodes[node].parts) {
-                for (const Vertex& vertex : scene.mesh_at(node, part.mesh, placed, time)->vertices) {
+                const auto mesh = scene.mesh_at(node, part.mesh, placed, time);
+                for (const Vertex& vertex : mesh->vertices) {
                     const glm::dvec4 place = placed[node] * glm::dvec4(glm::dvec3(vertex.position), 1);
                     result.push_back(static_cast<float>(place.y));
                 }

@@ -41,6 +41,15 @@ std::string in_base64(const std::string& bytes) {
     return text;
 }
 
+/// What is told of a model with a material that has an extension which the file does not list.
+std::string loss_of_extension(const std::string& name) {
+    const TemporaryDirectory folder;
+    GltfFile gltf;
+    gltf.add_node({{"mesh", gltf.add_quad({{"extensions", {{name, Json::object()}}}})}});
+    const Model model = load_model(gltf.write(folder / "m.gltf"));
+    return model.losses.empty() ? "" : model.losses.front();
+}
+
 } // namespace
 
 TEST_CASE("URIs of buffers and images are percent-encoded") {
@@ -167,6 +176,9 @@ TEST_CASE("required extensions that are not known refuse the file by name, other
                           Catch::Contains(name) && Catch::Contains("m.gltf"));
         CHECK_THROWS_WITH(load_model(gltf.write_glb(folder / "m.glb")), Catch::Contains(name));
     }
+    CHECK(loss_of_extension("KHR_materials_clearcoat")
+          == "1 optional extension is left out (KHR_materials_clearcoat)");
+    CHECK(loss_of_extension("KHR_materials_unlit").empty());
 }
 
 TEST_CASE("quantized, strided and sparse numbers") {
