@@ -29,9 +29,11 @@ int base64_digit(char c) {
     return -1;
 }
 
-std::vector<std::uint8_t> decode_base64(std::string_view text) {
+/// Of base64 that may be broken into lines.
+std::vector<std::uint8_t> decode_base64(std::string text) {
+    std::erase_if(text, [](char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\n'; });
     while (!text.empty() && text.back() == '=')
-        text.remove_suffix(1);
+        text.pop_back();
     std::vector<std::uint8_t> bytes;
     bytes.reserve(text.size() / 4 * 3 + 2);
     std::uint32_t bits = 0;
@@ -47,6 +49,37 @@ std::vector<std::uint8_t> decode_base64(std::string_view text) {
         }
     }
     return bytes;
+}
+
+char lower(char c) {
+    return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+}
+
+bool same_but_for_case(std::string_view a, std::string_view b) {
+    return std::equal(a.begin(), a.end(), b.begin(), b.end(),
+                      [](char x, char y) { return lower(x) == lower(y); });
+}
+
+/// The file itself, or the one beside it that is called so but for capitals, as systems that don't tell them apart have it.
+std::optional<std::filesystem::path> find_file(const std::filesystem::path& file) {
+    std::error_code problem;
+    if (std::filesystem::is_regular_file(file, problem)) return file;
+    const std::string name = file.filename().string();
+    for (const auto& item : std::filesystem::directory_iterator(file.parent_path(), problem)) {
+        if (same_but_for_case(item.path().filename().string(), name) && item.is_regular_file(problem))
+            return item.path();
+    }
+    return std::nullopt;
+}
+
+/// What a name in a model may mean, the likeliest first: a URI without its query and fragment, or simply a name, with
+/// either kind of slash.
+std::vector<std::string> readings_of(std::string name) {
+    if (name.starts_with("file://")) name.erase(0, 7);
+    std::string slashes = name; // files written on Windows
+    std::replace(slashes.begin(), slashes.end(), '\\', '/');
+    const std::string path = name.substr(0, name.find_first_of("?#"));
+    return {percent_decoded(name), name, percent_decoded(slashes), slashes, percent_decoded(path)};
 }
 
 } // namespace
@@ -67,18 +100,12 @@ std::string percent_decoded(const std::string& uri) {
 }
 
 std::optional<std::filesystem::path> find_asset(const std::filesystem::path& model, const std::string& name) {
-    std::string plain = name;
-    if (plain.starts_with("file://")) plain.erase(0, 7);
-    std::string slashes = plain; // files written on Windows
-    std::replace(slashes.begin(), slashes.end(), '\\', '/');
-    for (const std::string& path : {percent_decoded(plain), plain, percent_decoded(slashes), slashes}) {
+    for (const std::string& path : readings_of(name)) {
         const std::size_t last = path.find_last_of('/');
         for (const std::string& candidate :
              {path, last == std::string::npos ? path : path.substr(last + 1)}) {
             if (candidate.empty() || candidate.find('\0') != std::string::npos) continue;
-            std::error_code problem;
-            const std::filesystem::path file = folder_of(model) / candidate;
-            if (std::filesystem::is_regular_file(file, problem)) return file;
+            if (auto file = find_file(folder_of(model) / candidate)) return file;
         }
     }
     return std::nullopt;
@@ -96,12 +123,14 @@ std::vector<std::uint8_t> read_asset(const std::filesystem::path& file) {
 }
 
 std::optional<std::vector<std::uint8_t>> decode_data_uri(const std::string& uri) {
-    if (!uri.starts_with("data:")) return std::nullopt;
+    constexpr std::string_view scheme = "data:", base64 = ";base64";
+    if (!same_but_for_case(std::string_view(uri).substr(0, scheme.size()), scheme)) return std::nullopt;
     const std::size_t comma = uri.find(',');
     if (comma == std::string::npos) throw std::invalid_argument("a data URI without a comma");
-    const std::string_view head = std::string_view(uri).substr(0, comma);
-    if (head.ends_with(";base64")) return decode_base64(std::string_view(uri).substr(comma + 1));
     const std::string text = percent_decoded(uri.substr(comma + 1));
+    const std::string_view head = std::string_view(uri).substr(0, comma);
+    if (head.size() >= base64.size() && same_but_for_case(head.substr(head.size() - base64.size()), base64))
+        return decode_base64(text);
     return std::vector<std::uint8_t>(text.begin(), text.end());
 }
 

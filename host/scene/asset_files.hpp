@@ -12,8 +12,8 @@ namespace postfx::host {
 /// "my%20buffer.bin" -> "my buffer.bin" (RFC 3986, 2.1). What is no escape stays.
 std::string percent_decoded(const std::string& uri);
 
-/// The regular file beside `model` that it calls `name`: a path or a percent-encoded URI, with slashes of either kind;
-/// of a path that only its author's machine has, the last part. Nothing if there is none.
+/// The regular file beside `model` that it calls `name`: a path or a percent-encoded URI, with slashes of either kind
+/// and whatever capitals; of a path that only its author's machine has, the last part. Nothing if there is none.
 std::optional<std::filesystem::path> find_asset(const std::filesystem::path& model, const std::string& name);
 
 /// Throws Error naming the file.

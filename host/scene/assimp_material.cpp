@@ -25,12 +25,30 @@ struct Source {
     std::string name;
     Sampler sampler;
     std::size_t uv_set = 0;
+    glm::mat3x2 placement{glm::mat3(1)};
 };
+
+/// How an MTL file calls a picture of that type; "" where it has none.
+const char* mtl_statement(aiTextureType type) {
+    switch (type) {
+    case aiTextureType_DIFFUSE:
+        return "map_kd";
+    case aiTextureType_EMISSIVE:
+        return "map_ke";
+    case aiTextureType_OPACITY:
+        return "map_d";
+    case aiTextureType_NORMALS:
+        return "norm";
+    default:
+        return "";
+    }
+}
 
 class MaterialReader {
 public:
-    MaterialReader(const aiScene& scene, const aiMaterial& source, ModelPictures& pictures, Losses& losses)
-        : scene_(scene), source_(source), pictures_(pictures), losses_(losses) {}
+    MaterialReader(const aiScene& scene, const aiMaterial& source, const MtlPlacements& placements,
+                   ModelPictures& pictures, Losses& losses)
+        : scene_(scene), source_(source), placements_(placements), pictures_(pictures), losses_(losses) {}
 
     AssimpMaterial read() {
         Material& material = result_.material;
@@ -62,6 +80,8 @@ private:
                 != aiReturn_SUCCESS)
                 continue;
             Source result{name.C_Str(), {}, set};
+            const auto placed = placements_.find({result_.material.name, mtl_statement(type)});
+            if (placed != placements_.end()) result.placement = placed->second;
             result.sampler.wrap_u = wrap_of(modes[0]);
             result.sampler.wrap_v = wrap_of(modes[1]);
             return result;
@@ -74,6 +94,7 @@ private:
         if (const auto source = find(types)) {
             result.picture = picture(source->name, srgb);
             result.sampler = source->sampler;
+            result.placement = source->placement;
             if (result.picture)
                 result.uv_set = pick_uv_set(source->uv_set, result_.uv_sets, result_.material.name, losses_);
         }
@@ -101,10 +122,11 @@ private:
         if (material.metal_rough) return;
         aiColor3D color;
         float number = 0;
+        // Without an exponent the colour is assimp's own, as of STL and PLY, where it is white.
+        if (source_.Get(AI_MATKEY_SHININESS, number) != aiReturn_SUCCESS) return;
+        if (number > 0) material.shininess = number;
         if (source_.Get(AI_MATKEY_COLOR_SPECULAR, color) == aiReturn_SUCCESS)
             material.specular = to_glm(color);
-        if (source_.Get(AI_MATKEY_SHININESS, number) == aiReturn_SUCCESS && number > 0)
-            material.shininess = number;
     }
 
     /// A picture of opacity alone, as OBJ's map_d.
@@ -119,6 +141,7 @@ private:
         material.diffuse_texture.picture = masked.picture;
         if (!color) {
             material.diffuse_texture.sampler = mask->sampler;
+            material.diffuse_texture.placement = mask->placement;
             material.diffuse_texture.uv_set =
                 pick_uv_set(mask->uv_set, result_.uv_sets, result_.material.name, losses_);
         }
@@ -145,6 +168,7 @@ private:
 
     const aiScene& scene_;
     const aiMaterial& source_;
+    const MtlPlacements& placements_;
     ModelPictures& pictures_;
     Losses& losses_;
     AssimpMaterial result_;
@@ -152,9 +176,10 @@ private:
 
 } // namespace
 
-AssimpMaterial read_assimp_material(const aiScene& scene, const aiMaterial& source, ModelPictures& pictures,
+AssimpMaterial read_assimp_material(const aiScene& scene, const aiMaterial& source,
+                                    const MtlPlacements& placements, ModelPictures& pictures,
                                     Losses& losses) {
-    return MaterialReader(scene, source, pictures, losses).read();
+    return MaterialReader(scene, source, placements, pictures, losses).read();
 }
 
 } // namespace postfx::host

@@ -2,6 +2,7 @@
 #include "mesh_checks.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace postfx::host {
 namespace {
@@ -66,7 +67,50 @@ void read_bones(const aiMesh& source, Deformation& deformation) {
     }
 }
 
+/// Vertices that are not finite equal any other to assimp, which joins them; these equal none that is of use.
+void mark_broken_vertices(aiMesh& mesh) {
+    constexpr float nowhere = 4e18f; // beyond what drop_broken_triangles keeps, and its square is finite
+    for (unsigned i = 0; i < mesh.mNumVertices && mesh.HasPositions(); ++i) {
+        const aiVector3D& v = mesh.mVertices[i];
+        if (!std::isfinite(v.x) || !std::isfinite(v.y) || !std::isfinite(v.z))
+            mesh.mVertices[i] = aiVector3D(nowhere);
+    }
+}
+
+bool has_direction(const aiVector3D& normal) {
+    return normal.SquareLength() > 0 && std::isfinite(normal.SquareLength());
+}
+
+/// Normals without direction, as of STL files that leave them to the reader, are those of their faces; where there are no
+/// others, assimp makes all of them.
+void replace_broken_normals(aiMesh& mesh) {
+    if (!mesh.mNormals || std::all_of(mesh.mNormals, mesh.mNormals + mesh.mNumVertices, has_direction))
+        return;
+    if (std::none_of(mesh.mNormals, mesh.mNormals + mesh.mNumVertices, has_direction)) {
+        delete[] mesh.mNormals;
+        mesh.mNormals = nullptr;
+        return;
+    }
+    for (unsigned i = 0; i < mesh.mNumFaces; ++i) {
+        const aiFace& face = mesh.mFaces[i];
+        if (face.mNumIndices < 3) continue;
+        const auto corner = [&](unsigned k) { return mesh.mVertices[face.mIndices[k]]; };
+        const aiVector3D normal = (corner(1) - corner(0)) ^ (corner(2) - corner(0));
+        for (unsigned k = 0; k < face.mNumIndices; ++k) {
+            aiVector3D& of_vertex = mesh.mNormals[face.mIndices[k]];
+            if (!has_direction(of_vertex)) of_vertex = normal;
+        }
+    }
+}
+
 } // namespace
+
+void prepare_assimp_meshes(const aiScene& scene) {
+    for (unsigned i = 0; i < scene.mNumMeshes; ++i) {
+        mark_broken_vertices(*scene.mMeshes[i]);
+        replace_broken_normals(*scene.mMeshes[i]);
+    }
+}
 
 glm::dmat4 to_glm(const aiMatrix4x4& m) {
     return glm::dmat4(glm::mat4(m.a1, m.b1, m.c1, m.d1, m.a2, m.b2, m.c2, m.d2, m.a3, m.b3, m.c3, m.d3, m.a4,

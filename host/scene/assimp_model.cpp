@@ -12,13 +12,13 @@
 
 #include <assimp/DefaultIOSystem.h>
 #include <assimp/Importer.hpp>
+#include <assimp/MemoryIOWrapper.h>
 #include <assimp/config.h>
 #include <assimp/postprocess.h>
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <map>
 #include <new>
 #include <set>
@@ -40,12 +40,30 @@ std::string usual_ending(const std::filesystem::path& file) {
     return ending.empty() ? lower(file.extension().string()) : ending;
 }
 
+/// What is read of an OBJ and its libraries on their way to assimp.
+struct ObjParts {
+    std::vector<std::string> libraries;
+    MtlPlacements placements;
+};
+
+/// A stream over text of its own.
+class TextStream : public Assimp::MemoryIOStream {
+public:
+    explicit TextStream(std::shared_ptr<const std::string> text)
+        : MemoryIOStream(reinterpret_cast<const std::uint8_t*>(text->data()), text->size()),
+          text_(std::move(text)) {}
+
+private:
+    std::shared_ptr<const std::string> text_;
+};
+
 /// The model under the name that its content should have, since assimp goes by names, and what it refers to as find_asset
-/// finds it; tells of every file once.
+/// finds it, OBJ and MTL as plain text; tells of every file once.
 class AssetSystem : public Assimp::DefaultIOSystem {
 public:
-    AssetSystem(std::filesystem::path model, std::string alias, const ReadingHooks& hooks)
-        : model_(std::move(model)), alias_(std::move(alias)), hooks_(hooks) {}
+    AssetSystem(std::filesystem::path model, std::string alias, const ReadingHooks& hooks, ObjParts& parts)
+        : model_(std::move(model)), alias_(std::move(alias)), hooks_(hooks), parts_(parts),
+          is_obj_(alias_.ends_with(".obj")) {}
 
     bool Exists(const char* name) const override { return name == alias_ || DefaultIOSystem::Exists(name); }
     Assimp::IOStream* Open(const char* name, const char* mode) override {
@@ -57,41 +75,55 @@ public:
             file = *asset;
         }
         if (opened_.insert(file).second) hooks_.opening(std::filesystem::file_size(file, problem));
+        if (is_obj_) return new TextStream(plain_text(file)); // assimp deletes it
         return DefaultIOSystem::Open(file.c_str(), mode);
     }
 
 private:
+    /// Of the model, or of a library.
+    std::shared_ptr<const std::string> plain_text(const std::filesystem::path& file) {
+        const auto [known, added] = texts_.try_emplace(file);
+        if (!added) return known->second;
+        const std::vector<std::uint8_t> bytes = read_asset(file);
+        const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+        std::string plain;
+        if (file == model_) {
+            ObjText obj = plain_obj(
+                text, [&](const std::string& name) { return find_asset(model_, name).has_value(); });
+            parts_.libraries = std::move(obj.libraries);
+            plain = std::move(obj.text);
+        } else {
+            plain = plain_mtl(text, parts_.placements);
+        }
+        return known->second = std::make_shared<const std::string>(std::move(plain));
+    }
+
     std::filesystem::path model_;
     std::string alias_;
     const ReadingHooks& hooks_;
+    ObjParts& parts_;
+    bool is_obj_;
     std::set<std::filesystem::path>
         opened_; ///< assimp opens the same file again and again, to guess what it is
+    std::map<std::filesystem::path, std::shared_ptr<const std::string>> texts_;
 };
-
-/// assimp says nothing of a material library that an OBJ names and that is not there.
-void check_material_libraries(const std::filesystem::path& file, Losses& losses) {
-    static const LossKind kind{"material library is missing", "material libraries are missing"};
-    if (usual_ending(file) != ".obj") return;
-    std::ifstream stream(file);
-    for (std::string line; std::getline(stream, line);) {
-        if (!line.starts_with("mtllib ")) continue;
-        while (!line.empty() && (line.back() == '\r' || line.back() == ' '))
-            line.pop_back();
-        const std::string name = line.substr(std::min(line.find_first_not_of(' ', 7), line.size()));
-        if (!find_asset(file, name)) losses.add(kind, name);
-    }
-}
 
 class AssimpReader {
 public:
-    AssimpReader(const std::filesystem::path& file, const aiScene& scene, const ReadingHooks& hooks)
-        : scene_(scene), pictures_(file, hooks, losses_) {
-        check_material_libraries(file, losses_);
+    AssimpReader(const std::filesystem::path& file, const aiScene& scene, const ReadingHooks& hooks,
+                 const ObjParts& parts)
+        : scene_(scene), parts_(parts), pictures_(file, hooks, losses_) {
+        // assimp says nothing of a library that is not there.
+        static const LossKind kind{"material library is missing", "material libraries are missing"};
+        for (const std::string& name : parts.libraries) {
+            if (!find_asset(file, name)) losses_.add(kind, name);
+        }
     }
 
     Model read() {
         for (unsigned i = 0; i < scene_.mNumMaterials; ++i) {
-            AssimpMaterial material = read_assimp_material(scene_, *scene_.mMaterials[i], pictures_, losses_);
+            AssimpMaterial material =
+                read_assimp_material(scene_, *scene_.mMaterials[i], parts_.placements, pictures_, losses_);
             model_.materials.push_back(std::move(material.material));
             uv_sets_.push_back(material.uv_sets);
         }
@@ -212,6 +244,7 @@ private:
     }
 
     const aiScene& scene_;
+    const ObjParts& parts_;
     Losses losses_;
     ModelPictures pictures_;
     Model model_;
@@ -237,16 +270,19 @@ private:
 } // namespace
 
 Model read_with_assimp(const std::filesystem::path& file, const ReadingHooks& hooks) {
+    ObjParts parts;
     Assimp::Importer importer;
     // Beside the file, so that the names in it are found from there.
     const std::string alias = (folder_of(file) / ("postfx-model" + usual_ending(file))).string();
-    importer.SetIOHandler(new AssetSystem(file, alias, hooks));          // the importer deletes it
+    importer.SetIOHandler(new AssetSystem(file, alias, hooks, parts));   // the importer deletes it
     importer.SetPropertyFloat(AI_CONFIG_PP_GSN_MAX_SMOOTHING_ANGLE, 40); // sharper edges stay edges
-    const aiScene* scene = importer.ReadFile(
-        alias, aiProcess_Triangulate | aiProcess_GenSmoothNormals | aiProcess_JoinIdenticalVertices
-                   | aiProcess_SortByPType | aiProcess_ImproveCacheLocality | aiProcess_TransformUVCoords);
+    if (!importer.ReadFile(alias, 0)) fail(file, importer);
+    prepare_assimp_meshes(*importer.GetScene());
+    const aiScene* scene = importer.ApplyPostProcessing(
+        aiProcess_Triangulate | aiProcess_GenSmoothNormals | aiProcess_JoinIdenticalVertices
+        | aiProcess_SortByPType | aiProcess_ImproveCacheLocality | aiProcess_TransformUVCoords);
     if (!scene || !scene->mRootNode) fail(file, importer);
-    return AssimpReader(file, *scene, hooks).read();
+    return AssimpReader(file, *scene, hooks, parts).read();
 }
 
 bool is_model_file(const std::filesystem::path& file) {

@@ -3,6 +3,7 @@
 
 #include "animation_clips.hpp"
 #include "model_pictures.hpp"
+#include "obj_text.hpp"
 
 #include <assimp/scene.h>
 
@@ -19,8 +20,11 @@ struct AssimpMaterial {
     Material material;
     std::vector<std::size_t> uv_sets;
 };
-AssimpMaterial read_assimp_material(const aiScene& scene, const aiMaterial& source, ModelPictures& pictures,
-                                    Losses& losses);
+/// `placements` of an OBJ's pictures; none of other formats.
+AssimpMaterial read_assimp_material(const aiScene& scene, const aiMaterial& source,
+                                    const MtlPlacements& placements, ModelPictures& pictures, Losses& losses);
+/// Make meshes fit for assimp's own processing: what is not finite must not be joined with what is.
+void prepare_assimp_meshes(const aiScene& scene);
 /// The triangles; the joints of vertices are the mesh's bones in their order.
 Mesh read_assimp_mesh(const aiMesh& source, const std::vector<std::size_t>& uv_sets, Losses& losses);
 AnimationClip read_assimp_animation(const aiAnimation& source,

@@ -111,6 +111,22 @@ void GltfDocument::find_version() {
     }
 }
 
+/// Extensions that materials bring without being listed as used, as careless exporters write.
+std::vector<std::string> GltfDocument::unlisted_extensions(const std::vector<std::string>& listed) const {
+    std::vector<std::string> result;
+    for (std::size_t i = 0; i < count("materials"); ++i) {
+        const Json& material = item("materials", i);
+        const auto extensions = material.find("extensions");
+        if (extensions == material.end() || !extensions->is_object()) continue;
+        for (const auto& [name, value] : extensions->items()) {
+            if (std::find(listed.begin(), listed.end(), name) == listed.end()
+                && std::find(result.begin(), result.end(), name) == result.end())
+                result.push_back(name);
+        }
+    }
+    return result;
+}
+
 void GltfDocument::check_extensions(Losses& losses) const {
     const auto names = [&](const char* key) {
         std::vector<std::string> result;
@@ -126,7 +142,10 @@ void GltfDocument::check_extensions(Losses& losses) const {
                 fail(fmt::format("this model requires the glTF extension {}, which postfx can't read", name));
         }
         static const LossKind kind{"optional extension is left out", "optional extensions are left out"};
-        for (const std::string& name : names("extensionsUsed")) {
+        std::vector<std::string> used = names("extensionsUsed");
+        for (std::string& name : unlisted_extensions(used))
+            used.push_back(std::move(name));
+        for (const std::string& name : used) {
             if (!known(name)) losses.add(kind, name);
         }
     } catch (const Json::exception&) {

@@ -52,6 +52,7 @@ private:
     void read_container();
     void find_version();
     void check_extensions(Losses& losses) const;
+    std::vector<std::string> unlisted_extensions(const std::vector<std::string>& listed) const;
     const std::vector<std::uint8_t>& buffer(std::size_t index) const;
 
     std::filesystem::path file_;

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 #include <set>
 
@@ -202,9 +203,11 @@ Mesh read_gltf_primitive(const GltfDocument& document, const Json& primitive,
     mesh.vertices.resize(count);
     for (std::size_t i = 0; i < count; ++i)
         mesh.vertices[i].position = {positions[3 * i], positions[3 * i + 1], positions[3 * i + 2]};
-    const bool has_normals = attributes.has("NORMAL");
-    if (has_normals) {
+    bool has_normals = false;
+    if (attributes.has("NORMAL")) {
         const std::vector<float> normals = attributes.numbers("NORMAL", 3);
+        has_normals = std::any_of(normals.begin(), normals.end(),
+                                  [](float value) { return value != 0 && std::isfinite(value); });
         check_count(document, "NORMAL", normals.size() / 3, count);
         for (std::size_t i = 0; i < count; ++i)
             mesh.vertices[i].normal = {normals[3 * i], normals[3 * i + 1], normals[3 * i + 2]};
