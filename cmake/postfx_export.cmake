@@ -56,7 +56,7 @@ install(FILES ${PROJECT_BINARY_DIR}/installed/postfx-config.cmake ${PROJECT_BINA
         DESTINATION ${config_dir})
 install(DIRECTORY framework/include/postfx DESTINATION include)
 
-# The program finds its effects and data from its own place (catalog.hpp, host/resources.hpp).
+# The program finds its effects and data from its own place (catalog.hpp, host/run/resources.hpp).
 file(STRINGS framework/include/postfx/plugin.h abi_major REGEX "^#define POSTFX_ABI_MAJOR ")
 string(REGEX REPLACE "[^0-9]" "" abi_major ${abi_major})
 get_property(effects DIRECTORY PROPERTY BUILDSYSTEM_TARGETS)

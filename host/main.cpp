@@ -1,5 +1,5 @@
 // The program `postfx`: finds the subcommand, runs it, turns errors into one line and a status.
-#include "command.hpp"
+#include "commands/command.hpp"
 
 #include <postfx/error.hpp>
 

@@ -1,13 +1,16 @@
 // postfx apply: a chain on images that someone else made.
-#include "budget.hpp"
 #include "command.hpp"
-#include "gl_session.hpp"
-#include "number_checks.hpp"
 #include "options.hpp"
-#include "picture.hpp"
-#include "picture_input.hpp"
-#include "report_output.hpp"
-#include "warnings.hpp"
+#include "report_options.hpp"
+
+#include "budget/met_budget.hpp"
+#include "input/picture_input.hpp"
+#include "run/chain_runner.hpp"
+#include "run/gl_session.hpp"
+#include "run/picture_file.hpp"
+#include "run/scene_view.hpp"
+#include "terminal/number_checks.hpp"
+#include "terminal/warnings.hpp"
 
 #include <gl/objects.hpp>
 #include <image/alpha.hpp>

@@ -1,11 +1,16 @@
 // postfx bench: what chains cost, measured alternately in one run and told in copy passes.
-#include "budget.hpp"
 #include "command.hpp"
-#include "gl_session.hpp"
-#include "measure.hpp"
 #include "options.hpp"
-#include "picture.hpp"
-#include "scene_input.hpp"
+#include "scene_options.hpp"
+
+#include "budget/met_budget.hpp"
+#include "measure/level_trial.hpp"
+#include "measure/measure.hpp"
+#include "run/chain_runner.hpp"
+#include "run/gl_session.hpp"
+#include "run/resources.hpp"
+#include "run/scene_view.hpp"
+#include "terminal/progress_bar.hpp"
 
 #include <base/read_file.hpp>
 #include <image/metrics.hpp>

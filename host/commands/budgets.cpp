@@ -1,13 +1,15 @@
 // postfx budgets: is it worth to ask for a budget? Chosen levels against one level for all, on scenes.
 #include "command.hpp"
-#include "curves.hpp"
-#include "gl_session.hpp"
-#include "interruption.hpp"
 #include "options.hpp"
-#include "scene_input.hpp"
-#include "truth_store.hpp"
 
+#include "budget/device_curves.hpp"
+#include "input/open_scene.hpp"
+#include "measure/truth_store.hpp"
+#include "run/gl_session.hpp"
+#include "run/resources.hpp"
+#include "run/scene_view.hpp"
 #include "study/engine/budget_proof.hpp"
+#include "terminal/interruption.hpp"
 
 #include <image/files.hpp>
 

@@ -1,17 +1,17 @@
 // postfx calibrate: what levels cost on this device; how far they are from truths is known already.
 #include "command.hpp"
-#include "curves.hpp"
-#include "gl_session.hpp"
-#include "interruption.hpp"
 #include "options.hpp"
-#include "resources.hpp"
-#include "scene_input.hpp"
-#include "text_table.hpp"
 
+#include "budget/device_curves.hpp"
+#include "input/open_scene.hpp"
+#include "run/gl_session.hpp"
+#include "run/resources.hpp"
 #include "study/engine/times.hpp"
 #include "study/engine/view.hpp"
 #include "study/fit.hpp"
 #include "study/spec.hpp"
+#include "terminal/interruption.hpp"
+#include "terminal/text_table.hpp"
 
 #include <build_commit.hpp>
 #include <gl/clock.hpp>

@@ -1,12 +1,15 @@
 // postfx called-for: which effects which scenes call for, why, and what it saves to leave out the others.
 #include "command.hpp"
-#include "gl_session.hpp"
-#include "number_checks.hpp"
 #include "options.hpp"
-#include "resources.hpp"
-#include "scene_input.hpp"
-#include "skipping.hpp"
-#include "text_table.hpp"
+
+#include "input/open_scene.hpp"
+#include "measure/skipping.hpp"
+#include "run/gl_session.hpp"
+#include "run/resources.hpp"
+#include "run/scene_view.hpp"
+#include "terminal/number_checks.hpp"
+#include "terminal/progress_bar.hpp"
+#include "terminal/text_table.hpp"
 
 #include <image/files.hpp>
 

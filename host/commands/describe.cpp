@@ -1,8 +1,9 @@
 // postfx describe: one effect's declaration.
 #include "command.hpp"
-#include "effect_text.hpp"
 #include "options.hpp"
-#include "text_table.hpp"
+
+#include "terminal/effect_text.hpp"
+#include "terminal/text_table.hpp"
 
 #include <fmt/format.h>
 

@@ -1,7 +1,8 @@
 // postfx diff: how far two pictures are from each other, for people and for scripts.
 #include "command.hpp"
-#include "effect_text.hpp"
-#include "text_table.hpp"
+
+#include "terminal/effect_text.hpp"
+#include "terminal/text_table.hpp"
 
 #include <image/files.hpp>
 #include <image/flip.hpp>

@@ -1,9 +1,10 @@
 // postfx docs: the reference pages, made from what the code itself declares.
 #include "command.hpp"
-#include "effect_text.hpp"
 #include "options.hpp"
-#include "resources.hpp"
-#include "text_table.hpp"
+
+#include "run/resources.hpp"
+#include "terminal/effect_text.hpp"
+#include "terminal/text_table.hpp"
 
 #include <image/files.hpp>
 

@@ -1,11 +1,15 @@
 // postfx explain: the plan, without drawing the chain; with --measure, what the frame decides and what skipping saves.
-#include "budget.hpp"
 #include "command.hpp"
-#include "gl_session.hpp"
 #include "options.hpp"
-#include "picture.hpp"
-#include "scene_input.hpp"
-#include "skipping.hpp"
+#include "scene_options.hpp"
+
+#include "budget/met_budget.hpp"
+#include "measure/level_trial.hpp"
+#include "measure/skipping.hpp"
+#include "run/gl_session.hpp"
+#include "run/picture_file.hpp"
+#include "run/scene_view.hpp"
+#include "terminal/progress_bar.hpp"
 
 #include <postfx/postfx.hpp>
 

@@ -1,6 +1,7 @@
 // postfx inspect: what is in an image file, and what would be taken as what.
 #include "command.hpp"
-#include "text_table.hpp"
+
+#include "terminal/text_table.hpp"
 
 #include <image/files.hpp>
 

@@ -1,11 +1,11 @@
 // postfx list: what there is to use, by name.
 #include "command.hpp"
-#include "effect_text.hpp"
 #include "options.hpp"
-#include "resources.hpp"
-#include "text_table.hpp"
 
+#include "run/resources.hpp"
 #include "scene/scene.hpp"
+#include "terminal/effect_text.hpp"
+#include "terminal/text_table.hpp"
 
 #include <postfx/error.hpp>
 

@@ -1,7 +1,8 @@
 // postfx new: an effect's folder that builds, runs and passes its tests as it is.
 #include "command.hpp"
-#include "resources.hpp"
-#include "text_table.hpp"
+
+#include "run/resources.hpp"
+#include "terminal/text_table.hpp"
 
 #include <base/read_file.hpp>
 #include <postfx/catalog.hpp>

@@ -1,6 +1,7 @@
 // postfx read-model: what the program starts itself as, to read models apart from everything else. Not for users.
 #include "command.hpp"
-#include "model_process.hpp"
+
+#include "input/model_process.hpp"
 
 #include <unistd.h>
 

@@ -1,11 +1,16 @@
 // postfx render: a scene through a chain to a picture or a numbered sequence.
-#include "budget.hpp"
 #include "command.hpp"
-#include "gl_session.hpp"
 #include "options.hpp"
-#include "picture.hpp"
-#include "report_output.hpp"
-#include "scene_input.hpp"
+#include "report_options.hpp"
+#include "scene_options.hpp"
+
+#include "budget/met_budget.hpp"
+#include "measure/level_trial.hpp"
+#include "run/chain_runner.hpp"
+#include "run/gl_session.hpp"
+#include "run/picture_file.hpp"
+#include "run/scene_view.hpp"
+#include "terminal/progress_bar.hpp"
 
 #include <gl/objects.hpp>
 #include <image/files.hpp>

@@ -1,16 +1,17 @@
 // postfx study: what accuracy costs in time, of every level of every effect.
 #include "command.hpp"
-#include "gl_session.hpp"
-#include "interruption.hpp"
 #include "options.hpp"
-#include "resources.hpp"
-#include "text_table.hpp"
-#include "truth_store.hpp"
 
+#include "measure/truth_store.hpp"
+#include "run/gl_session.hpp"
+#include "run/resources.hpp"
+#include "run/scene_view.hpp"
 #include "study/engine/study.hpp"
 #include "study/output.hpp"
 #include "study/sentences.hpp"
 #include "study/tables.hpp"
+#include "terminal/interruption.hpp"
+#include "terminal/text_table.hpp"
 
 #include <build_commit.hpp>
 #include <gl/clock.hpp>

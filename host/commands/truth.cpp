@@ -1,13 +1,14 @@
 // postfx truth: what an effect ought to give, slowly and by other means.
 #include "command.hpp"
-#include "effect_text.hpp"
-#include "gl_session.hpp"
-#include "interruption.hpp"
-#include "number_checks.hpp"
 #include "options.hpp"
-#include "picture.hpp"
-#include "scene_input.hpp"
-#include "truth_store.hpp"
+
+#include "input/open_scene.hpp"
+#include "measure/truth_store.hpp"
+#include "run/gl_session.hpp"
+#include "run/scene_view.hpp"
+#include "terminal/effect_text.hpp"
+#include "terminal/interruption.hpp"
+#include "terminal/number_checks.hpp"
 
 #include <image/files.hpp>
 

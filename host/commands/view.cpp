@@ -1,11 +1,15 @@
 // postfx view: the chain live in a window.
-#include "budget.hpp"
 #include "command.hpp"
-#include "gl_session.hpp"
 #include "options.hpp"
-#include "picture.hpp"
-#include "scene_input.hpp"
+#include "scene_options.hpp"
 
+#include "budget/met_budget.hpp"
+#include "budget/running_budget.hpp"
+#include "measure/level_trial.hpp"
+#include "run/chain_runner.hpp"
+#include "run/gl_session.hpp"
+#include "run/picture_file.hpp"
+#include "run/scene_view.hpp"
 #include "window/fly_camera.hpp"
 #include "window/window.hpp"
 

@@ -1,9 +1,12 @@
 #include "budget_proof.hpp"
 
-#include "chain_truth.hpp"
-#include "interruption.hpp"
-#include "level_trial.hpp"
-#include "measure.hpp"
+#include "measure/chain_truth.hpp"
+#include "measure/level_trial.hpp"
+#include "measure/measure.hpp"
+#include "run/chain_runner.hpp"
+#include "run/scene_view.hpp"
+#include "terminal/interruption.hpp"
+#include "terminal/progress_bar.hpp"
 #include "truths/drawn_scene.hpp"
 
 #include <image/metrics.hpp>

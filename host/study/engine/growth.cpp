@@ -1,8 +1,7 @@
 #include "growth.hpp"
 
-#include "interruption.hpp"
-
 #include "study/fit.hpp"
+#include "terminal/interruption.hpp"
 
 #include <image/metrics.hpp>
 

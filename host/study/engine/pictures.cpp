@@ -1,7 +1,7 @@
 #include "pictures.hpp"
 
-#include "interruption.hpp"
-#include "truth_store.hpp"
+#include "measure/truth_store.hpp"
+#include "terminal/interruption.hpp"
 #include "truths/drawn_scene.hpp"
 
 #include <image/flip.hpp>

@@ -1,12 +1,14 @@
 #include "study.hpp"
 
 #include "growth.hpp"
-#include "interruption.hpp"
-#include "scene_input.hpp"
 #include "thumbnails.hpp"
 
+#include "input/open_scene.hpp"
+#include "run/scene_view.hpp"
 #include "study/fit.hpp"
 #include "study/pareto.hpp"
+#include "terminal/interruption.hpp"
+#include "terminal/progress_bar.hpp"
 
 #include <gl/clock.hpp>
 #include <image/metrics.hpp>

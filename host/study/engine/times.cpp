@@ -1,7 +1,7 @@
 #include "times.hpp"
 
-#include "interruption.hpp"
-#include "measure.hpp"
+#include "measure/measure.hpp"
+#include "terminal/interruption.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,10 +1,8 @@
 // A scene as one effect is given it. [GL thread]
 #pragma once
 
-#include "options.hpp"
-#include "picture.hpp"
-#include "scene_input.hpp"
-
+#include "run/chain_runner.hpp"
+#include "run/scene_view.hpp"
 #include "scene/renderer.hpp"
 
 #include <gl/objects.hpp>

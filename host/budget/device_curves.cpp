@@ -1,6 +1,6 @@
-#include "curves.hpp"
+#include "device_curves.hpp"
 
-#include "resources.hpp"
+#include "run/resources.hpp"
 
 #include <postfx/error.hpp>
 

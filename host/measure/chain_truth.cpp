@@ -1,7 +1,8 @@
 #include "chain_truth.hpp"
 
-#include "interruption.hpp"
 #include "truth_store.hpp"
+
+#include "terminal/interruption.hpp"
 #include "truths/drawn_scene.hpp"
 
 #include <postfx/error.hpp>

@@ -1,4 +1,4 @@
-#include "report_output.hpp"
+#include "report_options.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>

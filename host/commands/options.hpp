@@ -1,12 +1,14 @@
 // Options that several commands share.
 #pragma once
 
+#include "budget/met_budget.hpp"
+#include "run/picture_file.hpp"
+
 #include <postfx/catalog.hpp>
 #include <postfx/chain.hpp>
 
 #include <CLI/CLI.hpp>
 
-#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -21,12 +23,6 @@ public:
 
 private:
     std::vector<std::string> plugin_directories_;
-};
-
-/// What is known of levels when a budget is met.
-struct BudgetSource {
-    std::string curves;     ///< file; "" = those of the current OpenGL context's device
-    bool by_curves = false; ///< errors are those of the curves: levels are not tried in the scene
 };
 
 /// --chain and --effect: which effects are used; --run-all: whether called for or not; --budget, --curves and
@@ -53,20 +49,6 @@ private:
     bool run_all_ = false;
 };
 
-/// A chain by its file or its name in configs/chains/; it may include those that are there.
-Chain read_chain_named(const std::string& name_or_path, const Catalog& catalog);
-
-/// Where a picture is written, and as what kind of file.
-struct PictureFile {
-    std::filesystem::path path;
-    std::string kind{};    ///< "png", "exr", ...; "" = as the path's ending says
-    int bits = 8;          ///< of a PNG
-    double quality = 0.92; ///< of a JPEG, 0..1
-
-    /// Then nothing else may be printed there.
-    bool is_standard_output() const { return path == "-"; }
-};
-
 /// -o, --format, --bits and --quality.
 class OutputOptions {
 public:
@@ -80,11 +62,5 @@ private:
     int bits_ = 8;
     double quality_ = 0.92;
 };
-
-/// "1280x720". Throws Error for anything else, or a side of 0 or above 32768.
-struct Size {
-    int width = 0, height = 0;
-};
-Size parse_size(const std::string& text);
 
 } // namespace postfx::host

@@ -1,8 +1,8 @@
 #include "truth_store.hpp"
 
-#include "interruption.hpp"
-#include "picture.hpp"
-#include "resources.hpp"
+#include "run/resources.hpp"
+#include "terminal/interruption.hpp"
+#include "terminal/progress_bar.hpp"
 
 #include <gl/clock.hpp>
 

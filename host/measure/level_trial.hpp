@@ -1,7 +1,8 @@
 // What levels do in one picture: drawn instead of taken from curves, which are means over other scenes. [GL thread]
 #pragma once
 
-#include "picture.hpp"
+#include "run/chain_runner.hpp"
+#include "run/scene_view.hpp"
 
 #include <postfx/budget.hpp>
 
@@ -23,5 +24,8 @@ struct TrialInputs {
 /// Throws Error.
 LevelTrial try_levels(const Chain& chain, const BudgetQuestion& question, const Budget& budget, Facts facts,
                       const TrialInputs& inputs);
+
+/// What levels are tried on: the facts' picture, drawn by `renderer`, which has to stay.
+TrialInputs trial_inputs(SceneRenderer& renderer, const Facts& facts, double time);
 
 } // namespace postfx::host

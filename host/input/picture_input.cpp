@@ -1,6 +1,6 @@
 #include "picture_input.hpp"
 
-#include "warnings.hpp"
+#include "terminal/warnings.hpp"
 
 #include <image/orientation.hpp>
 

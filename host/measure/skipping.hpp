@@ -2,7 +2,9 @@
 #pragma once
 
 #include "measure.hpp"
-#include "picture.hpp"
+
+#include "run/chain_runner.hpp"
+#include "terminal/progress_bar.hpp"
 
 #include <nlohmann/json_fwd.hpp>
 

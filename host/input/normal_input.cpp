@@ -1,6 +1,6 @@
 #include "normal_input.hpp"
 
-#include "number_checks.hpp"
+#include "terminal/number_checks.hpp"
 
 #include <postfx/error.hpp>
 

@@ -1,6 +1,8 @@
 #include "skipping.hpp"
 
-#include "scene_input.hpp"
+#include "run/chain_runner.hpp"
+#include "run/scene_view.hpp"
+#include "terminal/progress_bar.hpp"
 
 #include <nlohmann/json.hpp>
 

@@ -2,9 +2,8 @@
 // [GL thread]
 #pragma once
 
-#include "picture.hpp"
-
 #include "scene/renderer.hpp"
+#include "terminal/progress_bar.hpp"
 
 #include <gl/clock.hpp>
 #include <gl/objects.hpp>

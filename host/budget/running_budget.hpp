@@ -1,41 +1,21 @@
-// Chains that ask for a budget: levels are chosen before anything is planned for drawing, and, in a window, kept right.
+// A budget kept while its chain is drawn: levels change, and the change is faded. [thread of the context]
 #pragma once
 
-#include "curves.hpp"
-#include "level_trial.hpp"
-#include "options.hpp"
-#include "picture.hpp"
+#include "met_budget.hpp"
+
+#include "run/chain_runner.hpp"
 
 #include <gl/clock.hpp>
 #include <gl/cross_fade.hpp>
 
 #include <postfx/budget.hpp>
 
-#include <memory>
+#include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace postfx::host {
-
-/// What a chain's budget bought.
-struct MetBudget {
-    Budget budget;
-    FoundCurves curves;
-    LevelTrial trial; ///< of the levels in the scene; empty: they were not tried
-    BudgetQuestion question;
-    BudgetAnswer answer;
-
-    /// budget_text(), and where times and errors are from.
-    std::string text() const;
-    /// budget_json() with "curves": {"file", "device", "driver", "clock", "note"} and "tried": names of effects whose
-    /// levels were tried in the scene.
-    std::string json() const;
-};
-
-/// Set the chain's levels to what its budget buys in a picture of these facts; nothing happens to a chain without a
-/// budget.
-std::optional<MetBudget> meet_budget(Chain& chain, const Facts& facts, const BudgetSource& source,
-                                     const TrialInputs& inputs);
 
 /// What a chain takes, by the clock that curves are measured with. [GL thread]
 class ChainTimer {

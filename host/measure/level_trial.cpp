@@ -1,5 +1,8 @@
 #include "level_trial.hpp"
 
+#include "run/chain_runner.hpp"
+#include "run/scene_view.hpp"
+#include "terminal/progress_bar.hpp"
 #include "truths/drawn_scene.hpp"
 
 #include <image/metrics.hpp>
@@ -112,6 +115,17 @@ LevelTrial try_levels(const Chain& chain, const BudgetQuestion& question, const 
     }
     const bool any = std::any_of(counts.begin(), counts.end(), [](std::size_t count) { return count > 1; });
     return any ? Tryer(chain, question, facts, inputs, std::move(counts)).run() : LevelTrial{};
+}
+
+TrialInputs trial_inputs(SceneRenderer& renderer, const Facts& facts, double time) {
+    TrialInputs inputs;
+    inputs.frame.camera = facts.camera;
+    inputs.frame.time = time;
+    inputs.draw_scene = [&renderer, facts, time](const std::vector<std::string>& attachments) {
+        return textures_of(
+            renderer.render(facts.width, facts.height, time, attachments, CameraOverride{facts.camera, {}}));
+    };
+    return inputs;
 }
 
 } // namespace postfx::host

@@ -1,6 +1,7 @@
 #include "options.hpp"
 
-#include "resources.hpp"
+#include "run/picture_file.hpp"
+#include "run/resources.hpp"
 
 #include <image/files.hpp>
 
@@ -9,8 +10,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
-#include <charconv>
 #include <cstdio>
 
 #include <unistd.h>
@@ -73,10 +72,6 @@ Chain ChainOptions::read(const Catalog& catalog) const {
     return chain;
 }
 
-Chain read_chain_named(const std::string& name_or_path, const Catalog& catalog) {
-    return read_chain(find_chain(name_or_path), catalog, {data_directory() / "configs/chains"});
-}
-
 void OutputOptions::declare(CLI::App& app, const std::string& help) {
     app.add_option("-o,--output", path_, help + "; - is standard output")->required()->type_name("FILE");
     app.add_option("--format", kind_, "Kind of picture, whatever FILE is called: png, jpg, exr, hdr or pfm")
@@ -102,22 +97,6 @@ PictureFile OutputOptions::file() const {
     if (bits_ == 16 && written_kind(file.path, file.kind) != "png") throw Error("--bits 16 is for a PNG");
     check_output_folder(file.path);
     return file;
-}
-
-Size parse_size(const std::string& text) {
-    constexpr int largest_side = 32768; // as of image files; a device that has less says so itself
-    Size size;
-    const std::size_t x = text.find('x');
-    const auto read = [&](std::size_t from, std::size_t to, int& number) {
-        const auto result = std::from_chars(text.data() + from, text.data() + to, number);
-        return result.ec == std::errc() && result.ptr == text.data() + to && number >= 1
-               && number <= largest_side;
-    };
-    if (x == std::string::npos || !read(0, x, size.width) || !read(x + 1, text.size(), size.height)) {
-        throw Error(fmt::format("size \"{}\" is not WIDTHxHEIGHT with sides of 1 to {}, such as 1280x720",
-                                text, largest_side));
-    }
-    return size;
 }
 
 } // namespace postfx::host

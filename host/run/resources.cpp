@@ -44,6 +44,10 @@ fs::path find_chain(const std::string& name_or_path) {
                             did_you_mean(name_or_path, chain_names())));
 }
 
+Chain read_chain_named(const std::string& name_or_path, const Catalog& catalog) {
+    return read_chain(find_chain(name_or_path), catalog, {data_directory() / "configs/chains"});
+}
+
 fs::path cache_directory() {
     if (const char* cache = std::getenv("XDG_CACHE_HOME"); cache && *cache) return fs::path(cache) / "postfx";
     if (const char* home = std::getenv("HOME"); home && *home) return fs::path(home) / ".cache/postfx";

@@ -1,6 +1,8 @@
 // Files that come with the program: chains and scenes by name.
 #pragma once
 
+#include <postfx/chain.hpp>
+
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -17,6 +19,9 @@ std::vector<std::string> chain_names();
 /// "-" and what is or looks like a path as it is, readable or not; else the file of a name in configs/chains/. Throws
 /// Error with the nearest name.
 std::filesystem::path find_chain(const std::string& name_or_path);
+
+/// A chain by its file or its name in configs/chains/; it may include those that are there.
+Chain read_chain_named(const std::string& name_or_path, const Catalog& catalog);
 
 /// Where programs and other things that can be made again are kept: $XDG_CACHE_HOME/postfx or
 /// ~/.cache/postfx; empty when there is no home.

@@ -1,8 +1,8 @@
 // How a finished run is told: for people on stdout, or as JSON for scripts.
 #pragma once
 
-#include "budget.hpp"
-#include "options.hpp"
+#include "budget/met_budget.hpp"
+#include "run/picture_file.hpp"
 
 #include <postfx/executor.hpp>
 

@@ -1,6 +1,6 @@
 #include "depth_input.hpp"
 
-#include "number_checks.hpp"
+#include "terminal/number_checks.hpp"
 
 #include <base/projection_matrix.hpp>
 #include <image/joint_bilateral.hpp>
