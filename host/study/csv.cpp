@@ -43,12 +43,12 @@ private:
 
 constexpr const char* truth_kinds[] = {"scene", "layer"};
 
-void add_errors(Row& row, const SceneFindings& scene, const RungOnScene& rung) {
+void add_errors(Row& row, const SceneFindings& scene, const LevelOnScene& level) {
     for (const char* kind : truth_kinds) {
         const TruthFacts* truth = scene.find_truth(kind);
-        const auto error = rung.errors.find(kind);
+        const auto error = level.errors.find(kind);
         const PictureError unknown{std::nan(""), std::nan("")};
-        const PictureError& found = error == rung.errors.end() ? unknown : error->second;
+        const PictureError& found = error == level.errors.end() ? unknown : error->second;
         row.add(found.relative_rmse).add(truth ? truth->own_error : std::nan("")).add(found.flip);
     }
 }
@@ -66,15 +66,18 @@ std::string findings_csv(const Findings& findings) {
             "next,skipped\n";
     for (const EffectFindings& effect : findings.effects) {
         for (std::size_t s = 0; s < effect.scenes.size(); ++s) {
-            for (const Rung& rung : effect.rungs) {
+            for (const Level& level : effect.levels) {
                 Row row;
-                row.add(effect.id).add(effect.scenes[s].name).add(rung.level);
-                add_errors(row, effect.scenes[s], rung.scenes[s]);
-                for (const Cost& cost : rung.scenes[s].costs)
+                row.add(effect.id).add(effect.scenes[s].name).add(level.id);
+                add_errors(row, effect.scenes[s], level.scenes[s]);
+                for (const Cost& cost : level.scenes[s].costs)
                     row.add(cost);
-                row.add(static_cast<double>(rung.passes)).add(rung.bytes_written).add(rung.bytes_read);
-                row.add(rung.scenes[s].taps).add(rung.error).add(rung.dominated_by).add(rung.step_to_next);
-                text += row.add(rung.scenes[s].skipped).line();
+                row.add(static_cast<double>(level.passes)).add(level.bytes_written).add(level.bytes_read);
+                row.add(level.scenes[s].taps)
+                    .add(level.error)
+                    .add(level.dominated_by)
+                    .add(level.step_to_next);
+                text += row.add(level.scenes[s].skipped).line();
             }
         }
     }
@@ -84,11 +87,11 @@ std::string findings_csv(const Findings& findings) {
 std::string metrics_csv(const Findings& findings) {
     std::string text = "effect,level,metric,unit,value\n";
     for (const EffectFindings& effect : findings.effects) {
-        for (const Rung& rung : effect.rungs) {
+        for (const Level& level : effect.levels) {
             for (std::size_t m = 0; m < effect.metrics.size(); ++m) {
                 Row row;
-                row.add(effect.id).add(rung.level).add(effect.metrics[m].name).add(effect.metrics[m].unit);
-                text += row.add(rung.metrics[m]).line();
+                row.add(effect.id).add(level.id).add(effect.metrics[m].name).add(effect.metrics[m].unit);
+                text += row.add(level.metrics[m]).line();
             }
         }
     }

@@ -15,25 +15,25 @@ namespace {
 
 constexpr double percent = 0.01;
 
-/// Of a rung, mean over scenes; none where any scene lacks it.
-std::optional<double> mean_over_scenes(const Rung& rung, const std::string& kind,
+/// Of a level, mean over scenes; none where any scene lacks it.
+std::optional<double> mean_over_scenes(const Level& level, const std::string& kind,
                                        double PictureError::*value) {
     double sum = 0;
-    for (const RungOnScene& scene : rung.scenes) {
+    for (const LevelOnScene& scene : level.scenes) {
         const auto found = scene.errors.find(kind);
         if (found == scene.errors.end()) return std::nullopt;
         sum += found->second.*value;
     }
-    if (rung.scenes.empty()) return std::nullopt;
-    return sum / static_cast<double>(rung.scenes.size());
+    if (level.scenes.empty()) return std::nullopt;
+    return sum / static_cast<double>(level.scenes.size());
 }
 
 /// Times that are no more than noise can't be drawn on a logarithmic axis: this is the least that is.
 double least_time(const EffectFindings& effect) {
     constexpr double least_copies = 0.03; // no measurement here tells less
     double least = 0;
-    for (const Rung& rung : effect.rungs) {
-        for (const RungOnScene& scene : rung.scenes) {
+    for (const Level& level : effect.levels) {
+        for (const LevelOnScene& scene : level.scenes) {
             if (scene.costs.empty() || !(scene.costs[0].copies.median > 0)) continue;
             least = std::max(least, least_copies * scene.costs[0].ms.median / scene.costs[0].copies.median);
         }
@@ -41,7 +41,7 @@ double least_time(const EffectFindings& effect) {
     return least > 0 ? least : 1e-3;
 }
 
-using ErrorOf = std::function<std::optional<double>(const Rung&)>;
+using ErrorOf = std::function<std::optional<double>(const Level&)>;
 
 ScatterPlot scatter(const EffectFindings& effect, const ErrorOf& error_of, const std::string& y_label) {
     ScatterPlot plot;
@@ -50,15 +50,15 @@ ScatterPlot scatter(const EffectFindings& effect, const ErrorOf& error_of, const
     plot.y_unit = percent;
     plot.x_floor = least_time(effect);
     double least = 0;
-    for (const Rung& rung : effect.rungs) {
-        const auto error = error_of(rung);
+    for (const Level& level : effect.levels) {
+        const auto error = error_of(level);
         if (!error) continue;
-        plot.marks.push_back({.label = rung.name(),
-                              .x = rung.ms.median,
+        plot.marks.push_back({.label = level.name(),
+                              .x = level.ms.median,
                               .y = *error,
-                              .x_low = rung.ms.p10,
-                              .x_high = rung.ms.p90,
-                              .classic = rung.level == classic_level});
+                              .x_low = level.ms.p10,
+                              .x_high = level.ms.p90,
+                              .classic = level.id == classic_level});
         if (*error > 0 && (least == 0 || *error < least)) least = *error;
     }
     plot.y_floor = least > 0 ? least / 3 : 1e-6;
@@ -67,10 +67,10 @@ ScatterPlot scatter(const EffectFindings& effect, const ErrorOf& error_of, const
 
 void show_verdicts(ScatterPlot& plot, const EffectFindings& effect) {
     for (Mark& mark : plot.marks) {
-        for (const Rung& rung : effect.rungs) {
-            if (rung.name() != mark.label) continue;
-            mark.hollow = !rung.dominated_by.empty();
-            mark.on_hull = rung.on_hull;
+        for (const Level& level : effect.levels) {
+            if (level.name() != mark.label) continue;
+            mark.hollow = !level.dominated_by.empty();
+            mark.on_hull = level.on_hull;
         }
     }
 }
@@ -83,7 +83,7 @@ void add_floor(ScatterPlot& plot, double y, const std::string& label) {
 
 EffectPlot judged_plot(const EffectFindings& effect) {
     ScatterPlot plot = scatter(
-        effect, [](const Rung& rung) { return rung.error; },
+        effect, [](const Level& level) { return level.error; },
         effect.judged_by == "layer" ? "error from the best of its inputs, %" : "error from the truth, %");
     plot.title = fmt::format("{}: error against time", effect.id);
     show_verdicts(plot, effect);
@@ -95,7 +95,8 @@ EffectPlot judged_plot(const EffectFindings& effect) {
 
 EffectPlot other_plot(const EffectFindings& effect, const std::string& kind) {
     ScatterPlot plot = scatter(
-        effect, [&](const Rung& rung) { return mean_over_scenes(rung, kind, &PictureError::relative_rmse); },
+        effect,
+        [&](const Level& level) { return mean_over_scenes(level, kind, &PictureError::relative_rmse); },
         kind == "layer" ? "error from the best of its inputs, %" : "error from the scene's truth, %");
     plot.title = fmt::format("{}: error against time, truth of kind {}", effect.id, kind);
     return {kind,
@@ -107,7 +108,7 @@ EffectPlot other_plot(const EffectFindings& effect, const std::string& kind) {
 EffectPlot flip_plot(const EffectFindings& effect) {
     ScatterPlot plot = scatter(
         effect,
-        [&](const Rung& rung) { return mean_over_scenes(rung, effect.judged_by, &PictureError::flip); },
+        [&](const Level& level) { return mean_over_scenes(level, effect.judged_by, &PictureError::flip); },
         "difference that is seen (FLIP), %");
     plot.title = fmt::format("{}: FLIP against time", effect.id);
     return {"flip", "The same, as a viewer sees it who flips between picture and truth.", scatter_svg(plot)};
@@ -159,8 +160,8 @@ std::vector<EffectPlot> error_plots(const EffectFindings& effect) {
     plots.push_back(judged_plot(effect));
     if (effect.judged_by.empty()) return plots;
     const std::string other = effect.judged_by == "scene" ? "layer" : "scene";
-    if (std::any_of(effect.rungs.begin(), effect.rungs.end(), [&](const Rung& rung) {
-            return mean_over_scenes(rung, other, &PictureError::relative_rmse).has_value();
+    if (std::any_of(effect.levels.begin(), effect.levels.end(), [&](const Level& level) {
+            return mean_over_scenes(level, other, &PictureError::relative_rmse).has_value();
         }))
         plots.push_back(other_plot(effect, other));
     plots.push_back(flip_plot(effect));

@@ -58,10 +58,10 @@ std::optional<double> EffectFindings::inputs_error() const {
     return sum / static_cast<double>(scenes.size());
 }
 
-const Rung* EffectFindings::find(const std::string& level) const {
+const Level* EffectFindings::find(const std::string& id) const {
     const auto found =
-        std::find_if(rungs.begin(), rungs.end(), [&](const Rung& rung) { return rung.level == level; });
-    return found == rungs.end() ? nullptr : &*found;
+        std::find_if(levels.begin(), levels.end(), [&](const Level& level) { return level.id == id; });
+    return found == levels.end() ? nullptr : &*found;
 }
 
 } // namespace postfx::host::study

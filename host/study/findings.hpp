@@ -45,8 +45,8 @@ struct Cost {
     double megapixels() const { return 1e-6 * width * height; }
 };
 
-/// A rung, on one scene.
-struct RungOnScene {
+/// A level, on one scene.
+struct LevelOnScene {
     std::map<std::string, PictureError> errors; ///< by the truth's kind
     std::vector<Cost> costs;                    ///< as Conditions::time_sizes
     std::string skipped;                        ///< why the effect did not run there; "" if it did
@@ -56,26 +56,26 @@ struct RungOnScene {
 };
 
 /// A level of an effect.
-struct Rung {
-    std::string level; ///< id; "" when the effect has but one quality
+struct Level {
+    std::string id; ///< "" when the effect has but one quality
     std::string help;
-    std::vector<RungOnScene> scenes; ///< as EffectFindings::scenes
-    std::vector<double> metrics;     ///< as EffectFindings::metrics; NaN: could not be measured
-    int passes = 0;                  ///< that the effect adds; at most, as all that follow
-    double bytes_written = 0;        ///< per pixel of the picture
-    double bytes_read = 0;           ///< per pixel of the picture, if every texel that is read is read once
+    std::vector<LevelOnScene> scenes; ///< as EffectFindings::scenes
+    std::vector<double> metrics;      ///< as EffectFindings::metrics; NaN: could not be measured
+    int passes = 0;                   ///< that the effect adds; at most, as all that follow
+    double bytes_written = 0;         ///< per pixel of the picture
+    double bytes_read = 0;            ///< per pixel of the picture, if every texel that is read is read once
 
     // Concluded from these:
     std::optional<double> error; ///< mean over scenes; none without a truth
-    std::optional<double> taps;  ///< as RungOnScene's, mean over scenes as times are; none where one lacks it
-    Spread ms;                   ///< at the first of Conditions::time_sizes; mean over scenes
+    std::optional<double> taps; ///< as LevelOnScene's, mean over scenes as times are; none where one lacks it
+    Spread ms;                  ///< at the first of Conditions::time_sizes; mean over scenes
     TimeCurve time;
-    std::string dominated_by; ///< level of a rung that is no worse in one and better in the other; "" = none
+    std::string dominated_by; ///< id of one that is no worse in one and better in the other; "" = none
     bool on_hull = false;     ///< of the convex hull in log error over log time
-    double step_to_next = 0;  ///< FLIP to the next rung of the curve, mean over scenes; 0 for the last
+    double step_to_next = 0;  ///< FLIP to the next level of the curve, mean over scenes; 0 for the last
 
     /// "medium", or "its only level".
-    std::string name() const { return level.empty() ? "its only level" : level; }
+    std::string name() const { return id.empty() ? "its only level" : id; }
 };
 
 struct MetricFacts {
@@ -93,7 +93,7 @@ struct SceneFindings {
     const TruthFacts* find_truth(const std::string& kind) const;
 };
 
-/// How a rung grows with something.
+/// How a level grows with something.
 struct GrowthCurve {
     struct Point {
         double at = 0; ///< pixels of radius, or megapixels of the picture
@@ -126,22 +126,22 @@ struct EffectFindings {
     std::string id, help, stage;
     std::string values;       ///< that differ from the defaults, as in a chain file; "" = none
     std::string picture_size; ///< of pictures that were compared with truths, "480x270"
-    std::string judged_by;    ///< kind of the truth that Rung::error is from; "" = no truth of pixels
+    std::string judged_by;    ///< kind of the truth that Level::error is from; "" = no truth of pixels
     std::string error_is;     ///< in words
     std::vector<MetricFacts> metrics;
     std::vector<SceneFindings> scenes;
-    std::vector<Rung> rungs; ///< in the effect's order
+    std::vector<Level> levels; ///< in the effect's order
     std::vector<Growth> growth;
     std::vector<Thumbnail> thumbnails; ///< of the first scene
     double heat_white = 0;             ///< FLIP that is white in differences; 0: levels' own pictures instead
     std::vector<std::string> notes;    ///< what could not be measured, and why
     double seconds = 0;                ///< that the study of it took
 
-    /// The truth's own error where rungs are judged, mean over scenes; 0 without one.
+    /// The truth's own error where levels are judged, mean over scenes; 0 without one.
     double own_error() const;
     /// SceneFindings::inputs_error, mean over scenes; none where any lacks it.
     std::optional<double> inputs_error() const;
-    const Rung* find(const std::string& level) const;
+    const Level* find(const std::string& id) const;
 };
 
 /// What did not come to an end.

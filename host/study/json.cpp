@@ -44,11 +44,11 @@ Json scene_json(const SceneFindings& scene) {
             {"inputs_error", number(scene.inputs_error)}};
 }
 
-Json rung_on_scene_json(const RungOnScene& rung, const std::string& scene) {
+Json level_on_scene_json(const LevelOnScene& level, const std::string& scene) {
     Json errors = Json::object(), costs = Json::array();
-    for (const auto& [kind, error] : rung.errors)
+    for (const auto& [kind, error] : level.errors)
         errors[kind] = {{"relative_rmse", number(error.relative_rmse)}, {"flip", number(error.flip)}};
-    for (const Cost& cost : rung.costs) {
+    for (const Cost& cost : level.costs) {
         costs.push_back({{"width", cost.width},
                          {"height", cost.height},
                          {"ms", spread_json(cost.ms)},
@@ -57,28 +57,28 @@ Json rung_on_scene_json(const RungOnScene& rung, const std::string& scene) {
     return {{"scene", scene},
             {"errors", errors},
             {"costs", costs},
-            {"taps_per_pixel", number(rung.taps)},
-            {"skipped", rung.skipped}};
+            {"taps_per_pixel", number(level.taps)},
+            {"skipped", level.skipped}};
 }
 
-Json rung_json(const EffectFindings& effect, const Rung& rung) {
+Json level_json(const EffectFindings& effect, const Level& level) {
     Json scenes = Json::array(), metrics = Json::object();
     for (std::size_t s = 0; s < effect.scenes.size(); ++s)
-        scenes.push_back(rung_on_scene_json(rung.scenes[s], effect.scenes[s].name));
+        scenes.push_back(level_on_scene_json(level.scenes[s], effect.scenes[s].name));
     for (std::size_t m = 0; m < effect.metrics.size(); ++m)
-        metrics[effect.metrics[m].name] = number(rung.metrics[m]);
-    return {{"level", rung.level},
-            {"help", rung.help},
-            {"error", number(rung.error)},
-            {"ms", spread_json(rung.ms)},
-            {"time", time_json(rung.time)},
-            {"dominated_by", rung.dominated_by},
-            {"on_hull", rung.on_hull},
-            {"step_to_next", rung.step_to_next},
-            {"passes", rung.passes},
-            {"bytes_written_per_pixel", rung.bytes_written},
-            {"bytes_read_per_pixel", rung.bytes_read},
-            {"taps_per_pixel", number(rung.taps)},
+        metrics[effect.metrics[m].name] = number(level.metrics[m]);
+    return {{"level", level.id},
+            {"help", level.help},
+            {"error", number(level.error)},
+            {"ms", spread_json(level.ms)},
+            {"time", time_json(level.time)},
+            {"dominated_by", level.dominated_by},
+            {"on_hull", level.on_hull},
+            {"step_to_next", level.step_to_next},
+            {"passes", level.passes},
+            {"bytes_written_per_pixel", level.bytes_written},
+            {"bytes_read_per_pixel", level.bytes_read},
+            {"taps_per_pixel", number(level.taps)},
             {"metrics", metrics},
             {"scenes", scenes}};
 }
@@ -100,7 +100,7 @@ Json growth_json(const Growth& growth) {
 }
 
 Json effect_json(const EffectFindings& effect) {
-    Json scenes = Json::array(), metrics = Json::array(), rungs = Json::array(), growth = Json::array(),
+    Json scenes = Json::array(), metrics = Json::array(), levels = Json::array(), growth = Json::array(),
          curve = Json::array();
     for (const SceneFindings& scene : effect.scenes)
         scenes.push_back(scene_json(scene));
@@ -110,12 +110,12 @@ Json effect_json(const EffectFindings& effect) {
                            {"help", metric.help},
                            {"stands_for_error", metric.stands_for_error}});
     }
-    for (const Rung& rung : effect.rungs)
-        rungs.push_back(rung_json(effect, rung));
+    for (const Level& level : effect.levels)
+        levels.push_back(level_json(effect, level));
     for (const Growth& item : effect.growth)
         growth.push_back(growth_json(item));
     for (const std::size_t i : curve_of(effect))
-        curve.push_back(effect.rungs[i].level);
+        curve.push_back(effect.levels[i].id);
     return {{"id", effect.id},
             {"stage", effect.stage},
             {"values", effect.values},
@@ -127,7 +127,7 @@ Json effect_json(const EffectFindings& effect) {
             {"curve", curve},
             {"metrics", metrics},
             {"scenes", scenes},
-            {"rungs", rungs},
+            {"levels", levels},
             {"growth", growth},
             {"notes", effect.notes},
             {"seconds", effect.seconds}};

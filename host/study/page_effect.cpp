@@ -52,20 +52,20 @@ std::string share_text(double share) {
     return share > 0 && share < 5e-7 ? "&lt;&#8239;0.0001" : fmt::format("{:.3g}", 100 * share);
 }
 
-std::string mean_error(const Rung& rung, const std::string& kind, double PictureError::*value) {
+std::string mean_error(const Level& level, const std::string& kind, double PictureError::*value) {
     double sum = 0;
-    for (const RungOnScene& scene : rung.scenes) {
+    for (const LevelOnScene& scene : level.scenes) {
         const auto found = scene.errors.find(kind);
         if (found == scene.errors.end()) return "";
         sum += found->second.*value;
     }
-    return rung.scenes.empty() ? "" : share_text(sum / static_cast<double>(rung.scenes.size()));
+    return level.scenes.empty() ? "" : share_text(sum / static_cast<double>(level.scenes.size()));
 }
 
-double mean_copies(const Rung& rung) {
+double mean_copies(const Level& level) {
     double sum = 0;
     int count = 0;
-    for (const RungOnScene& scene : rung.scenes) {
+    for (const LevelOnScene& scene : level.scenes) {
         if (scene.costs.empty()) continue;
         sum += scene.costs.front().copies.median;
         ++count;
@@ -74,14 +74,14 @@ double mean_copies(const Rung& rung) {
 }
 
 bool has_truth(const EffectFindings& effect, const std::string& kind) {
-    return std::any_of(effect.rungs.begin(), effect.rungs.end(), [&](const Rung& rung) {
-        return !mean_error(rung, kind, &PictureError::relative_rmse).empty();
+    return std::any_of(effect.levels.begin(), effect.levels.end(), [&](const Level& level) {
+        return !mean_error(level, kind, &PictureError::relative_rmse).empty();
     });
 }
 
-std::string row_style(const Rung& rung) {
-    std::string style = rung.level == classic_level ? "classic" : "";
-    if (!rung.dominated_by.empty()) style += style.empty() ? "dominated" : " dominated";
+std::string row_style(const Level& level) {
+    std::string style = level.id == classic_level ? "classic" : "";
+    if (!level.dominated_by.empty()) style += style.empty() ? "dominated" : " dominated";
     return style;
 }
 
@@ -95,7 +95,7 @@ std::string taps_text(const std::optional<double>& taps) {
 }
 
 /// Means over scenes.
-std::string rung_table(const EffectFindings& effect) {
+std::string level_table(const EffectFindings& effect) {
     const bool scene = has_truth(effect, "scene"), layer = has_truth(effect, "layer");
     std::vector<std::string> heads = {"Level", "Time, ms", "Copies"};
     if (scene) heads.insert(heads.end(), {"Error, scene, %", "FLIP, scene, %"});
@@ -107,24 +107,24 @@ std::string rung_table(const EffectFindings& effect) {
     }
     heads.insert(heads.end(), {"Step up, FLIP %", "Passes", "Taps", "Bytes written / read"});
     Table table(heads);
-    for (const Rung& rung : effect.rungs) {
-        std::string name = fmt::format("<b>{}</b>", escaped(rung.name()));
-        if (!rung.dominated_by.empty())
-            name += fmt::format(" <small>dominated by {}</small>", escaped(rung.dominated_by));
-        if (!rung.help.empty()) name += fmt::format("<span class=\"help\">{}</span>", escaped(rung.help));
-        std::vector<std::string> cells = {name, spread_text(rung.ms), plain_text(mean_copies(rung))};
+    for (const Level& level : effect.levels) {
+        std::string name = fmt::format("<b>{}</b>", escaped(level.name()));
+        if (!level.dominated_by.empty())
+            name += fmt::format(" <small>dominated by {}</small>", escaped(level.dominated_by));
+        if (!level.help.empty()) name += fmt::format("<span class=\"help\">{}</span>", escaped(level.help));
+        std::vector<std::string> cells = {name, spread_text(level.ms), plain_text(mean_copies(level))};
         for (const char* kind : {"scene", "layer"}) {
             if (kind == std::string("scene") ? !scene : !layer) continue;
-            cells.push_back(mean_error(rung, kind, &PictureError::relative_rmse));
-            cells.push_back(mean_error(rung, kind, &PictureError::flip));
+            cells.push_back(mean_error(level, kind, &PictureError::relative_rmse));
+            cells.push_back(mean_error(level, kind, &PictureError::flip));
         }
-        for (const double value : rung.metrics)
+        for (const double value : level.metrics)
             cells.push_back(metric_text(value));
-        cells.push_back(rung.step_to_next > 0 ? share_text(rung.step_to_next) : "");
-        cells.push_back(fmt::format("{}", rung.passes));
-        cells.push_back(taps_text(rung.taps));
-        cells.push_back(fmt::format("{:.3g} / {:.3g}", rung.bytes_written, rung.bytes_read));
-        table.add(cells, row_style(rung));
+        cells.push_back(level.step_to_next > 0 ? share_text(level.step_to_next) : "");
+        cells.push_back(fmt::format("{}", level.passes));
+        cells.push_back(taps_text(level.taps));
+        cells.push_back(fmt::format("{:.3g} / {:.3g}", level.bytes_written, level.bytes_read));
+        table.add(cells, row_style(level));
     }
     return table.html();
 }
@@ -165,7 +165,7 @@ std::string thumbnails(const EffectFindings& effect, const std::map<std::string,
     return html + "<p class=\"note\">" + escaped(what) + "</p>\n";
 }
 
-/// Scene by scene: truths, then what each rung does there.
+/// Scene by scene: truths, then what each level does there.
 std::string scene_details(const EffectFindings& effect) {
     std::string html = "<details><summary>Scene by scene</summary>\n";
     for (std::size_t s = 0; s < effect.scenes.size(); ++s) {
@@ -184,14 +184,14 @@ std::string scene_details(const EffectFindings& effect) {
         html += "</ul>\n";
         std::vector<std::string> heads = {"Level", "Error, scene, %", "FLIP, %", "Error, layer, %",
                                           "FLIP, %"};
-        const std::vector<Cost>& sizes = effect.rungs.front().scenes[s].costs;
+        const std::vector<Cost>& sizes = effect.levels.front().scenes[s].costs;
         for (const Cost& cost : sizes)
             heads.push_back(fmt::format("ms at {}x{}", cost.width, cost.height));
         heads.insert(heads.end(), {"Rounds", "Taps", ""});
         Table table(heads);
-        for (const Rung& rung : effect.rungs) {
-            const RungOnScene& here = rung.scenes[s];
-            std::vector<std::string> cells = {escaped(rung.name())};
+        for (const Level& level : effect.levels) {
+            const LevelOnScene& here = level.scenes[s];
+            std::vector<std::string> cells = {escaped(level.name())};
             for (const char* kind : {"scene", "layer"}) {
                 const auto found = here.errors.find(kind);
                 const bool known = found != here.errors.end();
@@ -206,7 +206,7 @@ std::string scene_details(const EffectFindings& effect) {
             cells.push_back(rounds);
             cells.push_back(taps_text(here.taps));
             cells.push_back(here.skipped.empty() ? "" : "did not run: " + escaped(here.skipped));
-            table.add(cells, row_style(rung));
+            table.add(cells, row_style(level));
         }
         html += table.html();
     }
@@ -254,7 +254,7 @@ std::string effect_section(const EffectFindings& effect, const Conditions& condi
     for (const std::string& note : effect.notes)
         html += fmt::format("<p class=\"note\">{}</p>\n", escaped(note));
     html += figures(error_plots(effect), "main");
-    html += rung_table(effect);
+    html += level_table(effect);
     std::string scenes;
     for (const SceneFindings& scene : effect.scenes)
         scenes += (scenes.empty() ? "" : ", ") + scene.name;

@@ -27,22 +27,22 @@ int compare_errors(double a, double b, double own_error) {
     return compare(x, y, 0.02 * std::max(x, y));
 }
 
-bool dominates(const Rung& better, const Rung& rung, double own_error) {
-    const int time = compare_times(better.ms, rung.ms);
-    const int error = compare_errors(*better.error, *rung.error, own_error);
+bool dominates(const Level& better, const Level& level, double own_error) {
+    const int time = compare_times(better.ms, level.ms);
+    const int error = compare_errors(*better.error, *level.error, own_error);
     return time <= 0 && error <= 0 && time + error < 0;
 }
 
-std::optional<double> error_of(const EffectFindings& effect, const Rung& rung) {
+std::optional<double> error_of(const EffectFindings& effect, const Level& level) {
     if (effect.judged_by.empty()) {
         for (std::size_t i = 0; i < effect.metrics.size(); ++i) {
-            if (effect.metrics[i].stands_for_error && !std::isnan(rung.metrics[i])) return rung.metrics[i];
+            if (effect.metrics[i].stands_for_error && !std::isnan(level.metrics[i])) return level.metrics[i];
         }
         return std::nullopt;
     }
     double sum = 0;
     int count = 0;
-    for (const RungOnScene& scene : rung.scenes) {
+    for (const LevelOnScene& scene : level.scenes) {
         const auto found = scene.errors.find(effect.judged_by);
         if (found == scene.errors.end()) continue;
         sum += found->second.relative_rmse;
@@ -53,62 +53,63 @@ std::optional<double> error_of(const EffectFindings& effect, const Rung& rung) {
 }
 
 /// Time at the first size, mean over scenes; the curve through all sizes.
-void conclude_times(Rung& rung) {
+void conclude_times(Level& level) {
     Points points;
-    rung.ms = {};
+    level.ms = {};
     int scenes = 0;
-    for (const RungOnScene& scene : rung.scenes) {
+    for (const LevelOnScene& scene : level.scenes) {
         for (const Cost& cost : scene.costs)
             points.emplace_back(cost.megapixels(), cost.ms.median);
         if (scene.costs.empty()) continue;
         const Spread& ms = scene.costs.front().ms;
-        rung.ms.median += ms.median;
-        rung.ms.p10 += ms.p10;
-        rung.ms.p90 += ms.p90;
-        rung.ms.rounds = scenes == 0 ? ms.rounds : std::min(rung.ms.rounds, ms.rounds);
+        level.ms.median += ms.median;
+        level.ms.p10 += ms.p10;
+        level.ms.p90 += ms.p90;
+        level.ms.rounds = scenes == 0 ? ms.rounds : std::min(level.ms.rounds, ms.rounds);
         ++scenes;
     }
-    for (double* value : {&rung.ms.median, &rung.ms.p10, &rung.ms.p90})
+    for (double* value : {&level.ms.median, &level.ms.p10, &level.ms.p90})
         *value /= std::max(scenes, 1);
-    rung.time = fit_time(points);
+    level.time = fit_time(points);
 }
 
 void find_dominated(EffectFindings& effect) {
     const double own_error = effect.own_error();
-    for (Rung& rung : effect.rungs) {
-        rung.dominated_by.clear();
-        const Rung* best = nullptr;
-        for (const Rung& other : effect.rungs) {
-            if (&other == &rung || !rung.error || !other.error || !dominates(other, rung, own_error))
+    for (Level& level : effect.levels) {
+        level.dominated_by.clear();
+        const Level* best = nullptr;
+        for (const Level& other : effect.levels) {
+            if (&other == &level || !level.error || !other.error || !dominates(other, level, own_error))
                 continue;
             if (!best || *other.error < *best->error) best = &other;
         }
-        if (best) rung.dominated_by = best->level;
+        if (best) level.dominated_by = best->id;
     }
 }
 
-std::optional<double> mean_taps(const Rung& rung) {
+std::optional<double> mean_taps(const Level& level) {
     double sum = 0;
-    for (const RungOnScene& scene : rung.scenes) {
+    for (const LevelOnScene& scene : level.scenes) {
         if (!scene.taps) return std::nullopt;
         sum += *scene.taps;
     }
-    if (rung.scenes.empty()) return std::nullopt;
-    return sum / static_cast<double>(rung.scenes.size());
+    if (level.scenes.empty()) return std::nullopt;
+    return sum / static_cast<double>(level.scenes.size());
 }
 
 void find_hull(EffectFindings& effect) {
     std::vector<std::size_t> indices;
     std::vector<std::pair<double, double>> points;
-    for (std::size_t i = 0; i < effect.rungs.size(); ++i) {
-        Rung& rung = effect.rungs[i];
-        rung.on_hull = false;
-        if (!rung.error || !(rung.ms.median > 0) || !(*rung.error > 0) || std::isinf(*rung.error)) continue;
+    for (std::size_t i = 0; i < effect.levels.size(); ++i) {
+        Level& level = effect.levels[i];
+        level.on_hull = false;
+        if (!level.error || !(level.ms.median > 0) || !(*level.error > 0) || std::isinf(*level.error))
+            continue;
         indices.push_back(i);
-        points.emplace_back(std::log(rung.ms.median), std::log(*rung.error));
+        points.emplace_back(std::log(level.ms.median), std::log(*level.error));
     }
     for (const std::size_t i : lower_hull(points))
-        effect.rungs[indices[i]].on_hull = true;
+        effect.levels[indices[i]].on_hull = true;
 }
 
 } // namespace
@@ -135,10 +136,10 @@ std::vector<std::size_t> lower_hull(const std::vector<std::pair<double, double>>
 }
 
 void conclude(EffectFindings& effect) {
-    for (Rung& rung : effect.rungs) {
-        conclude_times(rung);
-        rung.error = error_of(effect, rung);
-        rung.taps = mean_taps(rung);
+    for (Level& level : effect.levels) {
+        conclude_times(level);
+        level.error = error_of(effect, level);
+        level.taps = mean_taps(level);
     }
     find_dominated(effect);
     find_hull(effect);
@@ -146,21 +147,21 @@ void conclude(EffectFindings& effect) {
 
 std::vector<std::size_t> curve_of(const EffectFindings& effect) {
     std::vector<std::size_t> curve;
-    for (std::size_t i = 0; i < effect.rungs.size(); ++i) {
-        const Rung& rung = effect.rungs[i];
-        if (rung.level == classic_level) continue; // there to be compared with, not to be used
-        if (rung.error && std::isfinite(*rung.error) && rung.dominated_by.empty()) curve.push_back(i);
+    for (std::size_t i = 0; i < effect.levels.size(); ++i) {
+        const Level& level = effect.levels[i];
+        if (level.id == classic_level) continue; // there to be compared with, not to be used
+        if (level.error && std::isfinite(*level.error) && level.dominated_by.empty()) curve.push_back(i);
     }
-    const auto& rungs = effect.rungs;
+    const auto& levels = effect.levels;
     std::sort(curve.begin(), curve.end(), [&](std::size_t a, std::size_t b) {
-        return std::pair(rungs[a].ms.median, *rungs[a].error)
-               < std::pair(rungs[b].ms.median, *rungs[b].error);
+        return std::pair(levels[a].ms.median, *levels[a].error)
+               < std::pair(levels[b].ms.median, *levels[b].error);
     });
-    // Of rungs that noise does not tell apart, the numbers decide.
+    // Of levels that noise does not tell apart, the numbers decide.
     double least = std::numeric_limits<double>::infinity();
     std::erase_if(curve, [&](std::size_t i) {
-        if (*rungs[i].error >= least) return true;
-        least = *rungs[i].error;
+        if (*levels[i].error >= least) return true;
+        least = *levels[i].error;
         return false;
     });
     return curve;
@@ -176,8 +177,8 @@ Curves curves_of(const Findings& findings) {
                   .effects = {}};
     for (const EffectFindings& effect : findings.effects) {
         for (const std::size_t i : curve_of(effect)) {
-            const Rung& rung = effect.rungs[i];
-            curves.effects[effect.id].push_back({rung.level, rung.time, *rung.error, rung.step_to_next});
+            const Level& level = effect.levels[i];
+            curves.effects[effect.id].push_back({level.id, level.time, *level.error, level.step_to_next});
         }
     }
     return curves;

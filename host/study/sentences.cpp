@@ -22,35 +22,35 @@ std::string short_number(double value) {
     return fmt::format("{:.2g}", value);
 }
 
-bool is_classic(const Rung& rung) {
-    return rung.level == classic_level;
+bool is_classic(const Level& level) {
+    return level.id == classic_level;
 }
 
-std::string closer_text(const Rung& better, const Rung& rung) {
-    if (*better.error == 0) return "exact where " + rung.name() + " is not";
-    return fmt::format("{} closer to the truth than {}", times_text(*rung.error / *better.error),
-                       rung.name());
+std::string closer_text(const Level& better, const Level& level) {
+    if (*better.error == 0) return "exact where " + level.name() + " is not";
+    return fmt::format("{} closer to the truth than {}", times_text(*level.error / *better.error),
+                       level.name());
 }
 
 /// How the time of one compares with another's, to stand behind "for".
-std::string price_text(const Rung& rung, const Rung& than) {
-    if (!(than.ms.median > 0) || !(rung.ms.median > 0)) return "a time too short to compare";
-    const double ratio = rung.ms.median / than.ms.median;
+std::string price_text(const Level& level, const Level& than) {
+    if (!(than.ms.median > 0) || !(level.ms.median > 0)) return "a time too short to compare";
+    const double ratio = level.ms.median / than.ms.median;
     if (ratio > 0.95 && ratio < 1.05) return "the same time";
     return times_text(ratio) + " the time";
 }
 
 /// The curve without the way it is usually done.
-std::vector<const Rung*> ladder_of(const EffectFindings& effect) {
-    std::vector<const Rung*> ladder;
+std::vector<const Level*> ladder_of(const EffectFindings& effect) {
+    std::vector<const Level*> ladder;
     for (const std::size_t i : curve_of(effect)) {
-        if (!is_classic(effect.rungs[i])) ladder.push_back(&effect.rungs[i]);
+        if (!is_classic(effect.levels[i])) ladder.push_back(&effect.levels[i]);
     }
     return ladder;
 }
 
-std::string ladder_sentence(const EffectFindings& effect, const std::vector<const Rung*>& ladder) {
-    const Rung& first = *ladder.front();
+std::string ladder_sentence(const EffectFindings& effect, const std::vector<const Level*>& ladder) {
+    const Level& first = *ladder.front();
     std::string text =
         fmt::format("{}: {} is {} from the truth and takes {}", effect.id, first.name(),
                     *first.error == 0 ? "not at all away" : percent_text(*first.error) + " away",
@@ -63,21 +63,21 @@ std::string ladder_sentence(const EffectFindings& effect, const std::vector<cons
 }
 
 /// Of those that take no longer than classic, the closest; else the quickest that is closer.
-const Rung* rival_of(const Rung& classic, const std::vector<const Rung*>& ladder) {
-    const Rung* rival = nullptr;
-    for (const Rung* rung : ladder) {
-        if (rung->ms.median <= classic.ms.median * 1.05) rival = rung;
+const Level* rival_of(const Level& classic, const std::vector<const Level*>& ladder) {
+    const Level* rival = nullptr;
+    for (const Level* level : ladder) {
+        if (level->ms.median <= classic.ms.median * 1.05) rival = level;
     }
     if (rival) return rival;
-    for (const Rung* rung : ladder) {
-        if (*rung->error < *classic.error) return rung;
+    for (const Level* level : ladder) {
+        if (*level->error < *classic.error) return level;
     }
     return nullptr;
 }
 
-std::string classic_sentence(const Rung& classic, const std::vector<const Rung*>& ladder) {
+std::string classic_sentence(const Level& classic, const std::vector<const Level*>& ladder) {
     const std::string start = "The way it is usually done (classic) ";
-    const Rung* rival = rival_of(classic, ladder);
+    const Level* rival = rival_of(classic, ladder);
     if (!rival)
         return start
                + fmt::format("is {} from the truth and takes {}; no level is closer.",
@@ -95,20 +95,20 @@ std::string classic_sentence(const Rung& classic, const std::vector<const Rung*>
     return start + farther + fmt::format(" for {}.", price_text(classic, *rival));
 }
 
-std::string dominated_sentence(const EffectFindings& effect, const Rung& rung) {
-    const Rung* better = effect.find(rung.dominated_by);
-    const bool closer = *better->error < 0.98 * *rung.error,
-               faster = better->ms.median < 0.98 * rung.ms.median;
-    const std::string speed = better->ms.median > 0 && rung.ms.median > 0
-                                  ? times_text(rung.ms.median / better->ms.median) + " faster"
+std::string dominated_sentence(const EffectFindings& effect, const Level& level) {
+    const Level* better = effect.find(level.dominated_by);
+    const bool closer = *better->error < 0.98 * *level.error,
+               faster = better->ms.median < 0.98 * level.ms.median;
+    const std::string speed = better->ms.median > 0 && level.ms.median > 0
+                                  ? times_text(level.ms.median / better->ms.median) + " faster"
                                   : std::string("faster");
-    return fmt::format("{} is not worth its time: {} is {}{}.", rung.name(), better->name(),
-                       closer ? closer_text(*better, rung) : "as close",
+    return fmt::format("{} is not worth its time: {} is {}{}.", level.name(), better->name(),
+                       closer ? closer_text(*better, level) : "as close",
                        faster ? " and " + speed : " and no slower");
 }
 
-std::string limit_sentence(const EffectFindings& effect, const std::vector<const Rung*>& ladder) {
-    const Rung& best = *ladder.back();
+std::string limit_sentence(const EffectFindings& effect, const std::vector<const Level*>& ladder) {
+    const Level& best = *ladder.back();
     const double own = effect.own_error();
     std::string text =
         fmt::format("At best, {} is {} from the truth", best.name(),
@@ -153,20 +153,20 @@ std::string duration_text(double ms) {
 
 std::vector<std::string> sentences_of(const EffectFindings& effect) {
     std::vector<std::string> sentences;
-    const std::vector<const Rung*> ladder = ladder_of(effect);
+    const std::vector<const Level*> ladder = ladder_of(effect);
     if (ladder.empty()) {
         std::vector<std::string> parts;
-        for (const Rung& rung : effect.rungs)
-            parts.push_back(fmt::format("{} takes {}", rung.name(), duration_text(rung.ms.median)));
+        for (const Level& level : effect.levels)
+            parts.push_back(fmt::format("{} takes {}", level.name(), duration_text(level.ms.median)));
         sentences.push_back(fmt::format("{}: {}. How close it is to the truth is not known.", effect.id,
                                         fmt::join(parts, ", ")));
     } else {
         sentences.push_back(ladder_sentence(effect, ladder));
-        const Rung* classic = effect.find(classic_level);
+        const Level* classic = effect.find(classic_level);
         if (classic && classic->error) sentences.push_back(classic_sentence(*classic, ladder));
-        for (const Rung& rung : effect.rungs) {
-            if (!rung.dominated_by.empty() && !is_classic(rung))
-                sentences.push_back(dominated_sentence(effect, rung));
+        for (const Level& level : effect.levels) {
+            if (!level.dominated_by.empty() && !is_classic(level))
+                sentences.push_back(dominated_sentence(effect, level));
         }
         sentences.push_back(limit_sentence(effect, ladder));
     }

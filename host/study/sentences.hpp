@@ -15,8 +15,8 @@ std::string percent_text(double share);
 /// "0.35 ms", "1.2 s".
 std::string duration_text(double ms);
 
-/// The first is for those who read no further: how each rung compares with the one before it. The others tell about
-/// classic, dominated rungs, what limits, and what grows.
+/// The first is for those who read no further: how each level compares with the one before it. The others tell about
+/// classic, dominated levels, what limits, and what grows.
 std::vector<std::string> sentences_of(const EffectFindings& effect);
 
 } // namespace postfx::host::study

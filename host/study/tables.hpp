@@ -9,7 +9,7 @@
 
 namespace postfx::host::study {
 
-/// One row per effect, scene and rung, with a line of names first (RFC 4180, lines end in \n). What was not measured
+/// One row per effect, scene and level, with a line of names first (RFC 4180, lines end in \n). What was not measured
 /// or is not finite is empty.
 std::string findings_csv(const Findings& findings);
 

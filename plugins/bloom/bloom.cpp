@@ -62,7 +62,7 @@ constexpr Line reference_first[] = {gaussian_32, gaussian_32, gaussian_16, gauss
                                     gaussian_4,  gaussian_2,  gaussian_2,  gaussian_2};
 constexpr Line reference_lines[] = {whole, whole, whole, whole};
 
-struct Rung {
+struct Setup {
     int block;                    ///< pixels per texel of the finest blurred image, on each axis
     bool halves;                  ///< or else the lines' texels move apart, at full size
     int linear_ups;               ///< steps up that interpolate linearly, from the picture on
@@ -70,7 +70,7 @@ struct Rung {
     std::span<const Line> lines;  ///< blurs between two halvings
     const char* line_format = ""; ///< rounding in half floats adds up over hundreds of lines
 };
-constexpr Rung rungs[] = {
+constexpr Setup setups[] = {
     {4, true, 1, {}, {}},
     {2, true, 2, {}, {}},
     {1, true, 1, high_lines, high_lines},
@@ -91,16 +91,16 @@ struct Blur {
     int step = 1;       ///< texels between those of the line
 };
 
-Blur halving(const Rung& rung, int finer) {
-    if (finer == 0 && rung.block == 4)
+Blur halving(const Setup& setup, int finer) {
+    if (finer == 0 && setup.block == 4)
         return {0, 2, variance_first_quarter + variance_linear_up_from_quarter};
-    const double down = finer == 0 && rung.block == 2 ? variance_first_down : variance_down;
-    const double up = finer < rung.linear_ups ? variance_linear_up : variance_smooth_up;
+    const double down = finer == 0 && setup.block == 2 ? variance_first_down : variance_down;
+    const double up = finer < setup.linear_ups ? variance_linear_up : variance_smooth_up;
     return {finer, finer + 1, std::pow(4, finer) * (down + up)};
 }
 
 /// The blurs up to a sum of this variance, or as wide as makes sense in the picture.
-std::vector<Blur> blurs_for(const Rung& rung, double largest_variance, int longer_side) {
+std::vector<Blur> blurs_for(const Setup& setup, double largest_variance, int longer_side) {
     std::vector<Blur> blurs;
     double sum = 0;
     const auto add = [&](const Blur& blur) {
@@ -108,20 +108,20 @@ std::vector<Blur> blurs_for(const Rung& rung, double largest_variance, int longe
         blurs.push_back(blur);
         sum += blur.variance;
     };
-    for (const Line& line : rung.first)
+    for (const Line& line : setup.first)
         add({0, 0, line.variance(), line});
-    const int last = std::max(rung.block / 2, static_cast<int>(std::ceil(std::log2(longer_side))));
+    const int last = std::max(setup.block / 2, static_cast<int>(std::ceil(std::log2(longer_side))));
     for (int size = 0; size < last && (blurs.empty() || sum < largest_variance);) {
-        if (rung.halves) {
-            add(halving(rung, size));
+        if (setup.halves) {
+            add(halving(setup, size));
             size = blurs.back().coarser;
         }
         const double texel_area = std::pow(4, size);
-        for (const Line& line : rung.lines) {
-            add({rung.halves ? size : 0, rung.halves ? size : 0, texel_area * line.variance(), line,
-                 rung.halves ? 1 : 1 << size});
+        for (const Line& line : setup.lines) {
+            add({setup.halves ? size : 0, setup.halves ? size : 0, texel_area * line.variance(), line,
+                 setup.halves ? 1 : 1 << size});
         }
-        if (!rung.halves) ++size;
+        if (!setup.halves) ++size;
     }
     return blurs;
 }
@@ -195,9 +195,9 @@ public:
 
     /// The sum of all blurs but the first if that halves: bringing that up is left to compose(). The share that
     /// stays in its pixel goes in if lines make the glow that is added: then it costs nothing.
-    Glow glow(const Rung& rung, const std::vector<Blur>& blurs, const std::vector<double>& shares) {
-        halve(rung, blurs);
-        const bool holds_all = mode() != scatter && rung.block == 1;
+    Glow glow(const Setup& setup, const std::vector<Blur>& blurs, const std::vector<double>& shares) {
+        halve(setup, blurs);
+        const bool holds_all = mode() != scatter && setup.block == 1;
         postfx::PlanImage wider = sizes_[static_cast<std::size_t>(blurs.back().coarser)];
         double wider_share = shares.back();
         for (std::size_t i = blurs.size(); i-- > 0;) {
@@ -205,9 +205,9 @@ public:
             if (is_first && blurs[i].finer != blurs[i].coarser) break;
             const double own_share = is_first && !holds_all ? 0 : shares[i];
             wider_share += own_share;
-            wider = widen(rung, blurs[i], i, wider, wider_share > 0 ? own_share / wider_share : 0);
+            wider = widen(setup, blurs[i], i, wider, wider_share > 0 ? own_share / wider_share : 0);
         }
-        return {wider, rung.block, holds_all ? 0 : shares[0]};
+        return {wider, setup.block, holds_all ? 0 : shares[0]};
     }
 
     Glow classic_glow() {
@@ -254,14 +254,14 @@ private:
     double knee_end() const { return in_.number("threshold") * (1 + in_.number("knee")); }
 
     /// The light at every size that the blurs go by.
-    void halve(const Rung& rung, const std::vector<Blur>& blurs) {
-        const bool is_made = is_light_made(rung.block);
+    void halve(const Setup& setup, const std::vector<Blur>& blurs) {
+        const bool is_made = is_light_made(setup.block);
         sizes_ = {is_made ? light() : source()};
         for (const Blur& blur : blurs) {
             if (blur.coarser == blur.finer) continue;
-            if (blur.finer == 0 && rung.block > 1) {
+            if (blur.finer == 0 && setup.block > 1) {
                 sizes_.resize(static_cast<std::size_t>(blur.coarser) + 1, sizes_[0]);
-                sizes_.back() = first_down(rung, is_made ? 0 : has_threshold());
+                sizes_.back() = first_down(setup, is_made ? 0 : has_threshold());
             } else {
                 sizes_.push_back(
                     out_.pass(("down_" + std::to_string(blur.coarser)).c_str(), "bloom_down.glsl")
@@ -271,8 +271,8 @@ private:
             }
         }
     }
-    postfx::PlanImage first_down(const Rung& rung, int has_threshold) {
-        const bool is_quarter = rung.block == 4;
+    postfx::PlanImage first_down(const Setup& setup, int has_threshold) {
+        const bool is_quarter = setup.block == 4;
         return out_
             .pass(is_quarter ? "down_2" : "down_1",
                   is_quarter ? "bloom_first_quarter.glsl" : "bloom_first_down.glsl")
@@ -280,11 +280,11 @@ private:
             .value("knee_start", knee_start())
             .value("knee_end", knee_end())
             .constant("BLOOM_HAS_THRESHOLD", has_threshold)
-            .scale(1.0 / rung.block);
+            .scale(1.0 / setup.block);
     }
 
     /// One more blur of the wider ones' sum, mixed with the light at the finer size.
-    postfx::PlanImage widen(const Rung& rung, const Blur& blur, std::size_t index, postfx::PlanImage wider,
+    postfx::PlanImage widen(const Setup& setup, const Blur& blur, std::size_t index, postfx::PlanImage wider,
                             double own_share) {
         const postfx::PlanImage own = sizes_[static_cast<std::size_t>(blur.finer)];
         if (blur.finer != blur.coarser) {
@@ -293,18 +293,18 @@ private:
                 .reads("wider", wider)
                 .value("own_share", own_share)
                 .value("extent", extent(in_.width(), blur.coarser), extent(in_.height(), blur.coarser))
-                .constant("BLOOM_UP_IS_SMOOTH", blur.finer < rung.linear_ups ? 0 : 1)
+                .constant("BLOOM_UP_IS_SMOOTH", blur.finer < setup.linear_ups ? 0 : 1)
                 .scale_of(own, 1.0);
         }
         const std::string name = std::to_string(index);
         const postfx::PlanImage across =
-            line(("across_" + name).c_str(), rung, blur, {blur.step, 0}, own, wider, 0);
-        return line(("along_" + name).c_str(), rung, blur, {0, blur.step}, own, across, own_share);
+            line(("across_" + name).c_str(), setup, blur, {blur.step, 0}, own, wider, 0);
+        return line(("along_" + name).c_str(), setup, blur, {0, blur.step}, own, across, own_share);
     }
     struct Step {
         int x, y;
     };
-    postfx::PlanImage line(const char* name, const Rung& rung, const Blur& blur, Step step,
+    postfx::PlanImage line(const char* name, const Setup& setup, const Blur& blur, Step step,
                            postfx::PlanImage own, postfx::PlanImage wider, double own_share) {
         return out_.pass(name, "bloom_line.glsl")
             .reads("own", own, "nearest")
@@ -315,7 +315,7 @@ private:
             .value("near", blur.line.near)
             .value("far", blur.line.far)
             .value("own_share", own_share)
-            .format(rung.line_format)
+            .format(setup.line_format)
             .scale_of(own, 1.0);
     }
 
@@ -339,14 +339,14 @@ void plan(const postfx::Request& in, postfx::Builder& out) {
         return passes.compose(passes.classic_glow(), in.number("radius") > 0 ? in.number("intensity") : 0);
     }
 
-    const Rung& rung = rungs[in.level()];
+    const Setup& setup = setups[in.level()];
     const double widest = widest_over_mean * std::pow(in.number("radius") * in.height(), 2);
-    const std::vector<Blur> blurs = blurs_for(rung, widest, std::max(in.width(), in.height()));
+    const std::vector<Blur> blurs = blurs_for(setup, widest, std::max(in.width(), in.height()));
     const std::vector<double> shares = shares_of(blurs, widest);
     const bool stays = shares[0] == 1;
     if (stays && out.identity("the radius is too far below a pixel to count")) return;
     passes.ask_frame();
-    passes.compose(passes.glow(rung, blurs, shares), stays ? 0 : in.number("intensity"));
+    passes.compose(passes.glow(setup, blurs, shares), stays ? 0 : in.number("intensity"));
 }
 
 /// Scattering averages. A threshold is steep, and a guard compares with neighbours: no bound is known for these.

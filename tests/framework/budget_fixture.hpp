@@ -35,30 +35,30 @@ inline BudgetEntry entry(const std::string& name, std::vector<LevelOption> optio
 }
 
 /// Levels 0, 1, ... with these times and errors.
-inline BudgetEntry ladder(const std::string& name, const std::vector<std::pair<double, double>>& rungs,
+inline BudgetEntry ladder(const std::string& name, const std::vector<std::pair<double, double>>& levels,
                           double step = 0.001, int level = 0) {
     std::vector<LevelOption> options;
-    for (std::size_t i = 0; i < rungs.size(); ++i)
-        options.push_back({static_cast<int>(i), "level_" + std::to_string(i), rungs[i].first, rungs[i].second,
-                           i + 1 < rungs.size() ? step : 0});
+    for (std::size_t i = 0; i < levels.size(); ++i)
+        options.push_back({static_cast<int>(i), "level_" + std::to_string(i), levels[i].first,
+                           levels[i].second, i + 1 < levels.size() ? step : 0});
     return entry(name, std::move(options), level);
 }
 
-/// Errors fall from rung to rung; times mostly rise, but now and then a rung is dominated.
+/// Errors fall from level to level; times mostly rise, but now and then a level is dominated.
 inline BudgetQuestion random_question(std::mt19937& random, int entries, int most_levels) {
     std::uniform_real_distribution<double> unit(0, 1);
     BudgetQuestion question;
     question.base_ms = unit(random);
     for (int i = 0; i < entries; ++i) {
-        std::vector<std::pair<double, double>> rungs;
+        std::vector<std::pair<double, double>> levels;
         double ms = unit(random), error = 0.1 * unit(random);
-        const int levels = std::uniform_int_distribution<int>(1, most_levels)(random);
-        for (int level = 0; level < levels; ++level) {
-            rungs.emplace_back(ms, error);
+        const int count = std::uniform_int_distribution<int>(1, most_levels)(random);
+        for (int level = 0; level < count; ++level) {
+            levels.emplace_back(ms, error);
             ms = std::max(0.0, ms + 3 * unit(random) - 0.3);
             error *= 0.2 + 0.7 * unit(random);
         }
-        question.entries.push_back(ladder("effect_" + std::to_string(i), rungs));
+        question.entries.push_back(ladder("effect_" + std::to_string(i), levels));
     }
     return question;
 }

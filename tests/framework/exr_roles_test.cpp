@@ -272,6 +272,19 @@ TEST_CASE("A single layer serves any role that its channels allow") {
     }
 }
 
+TEST_CASE("Components that are channels of names of their own") {
+    for (const std::string name : {"N", "n", "normal_", "Normal"}) {
+        INFO(name);
+        const ExrContents file = single({"R", "G", "B", "Z", name + "x", name + "y", name + "z"});
+        CHECK(chosen(file, {.role = Role::normal}) == (name == "normal_" ? "normal" : name));
+        CHECK(chosen(file, {.role = Role::depth}) == "Z");
+    }
+    // Mantra's depth beside the rest of a place.
+    CHECK(chosen(single({"R", "G", "B", "Px", "Py", "Pz"}), {.role = Role::depth}) == "Pz");
+    // Two of three are no vector.
+    CHECK(refuses(single({"R", "G", "B", "Nx", "Ny"}), {.role = Role::normal, .layer = "N"}, {"N"}));
+}
+
 TEST_CASE("What is no colour is not taken for one") {
     auto part =
         part_with(all({channels("id", "RGB"), channels("crypto00", "RGBA"), channels("hash01", "RGBA")}));

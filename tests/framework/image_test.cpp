@@ -443,6 +443,20 @@ TEST_CASE("Links to what is not there yet are written through") {
     CHECK(fs::is_symlink(directory / "a.pfm"));
 }
 
+TEST_CASE("A file that is written again keeps who may read it") {
+    namespace fs = std::filesystem;
+    const TemporaryDirectory directory;
+    const fs::path file = directory / "a.pfm";
+    write_image(file, Image(1, 1, 1));
+    const auto usual = fs::status(file).permissions();
+    const auto own = fs::perms::owner_read | fs::perms::owner_write;
+    REQUIRE(usual != own);
+    fs::permissions(file, own);
+    write_image(file, Image(2, 1, 1));
+    CHECK(fs::status(file).permissions() == own);
+    CHECK(read_image(file).image.width == 2);
+}
+
 TEST_CASE("A kind that is named goes before the ending") {
     const TemporaryDirectory directory;
     const Image image(2, 1, 1, 2.0f);

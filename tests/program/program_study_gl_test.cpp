@@ -81,11 +81,11 @@ TEST_CASE("a study leaves tables, curves, plots, pictures and a page") {
     CHECK(vignette["id"] == "vignette");
     REQUIRE(vignette["scenes"].size() == 1);
     CHECK(vignette["scenes"][0]["name"] == "cornell");
-    for (const Json& rung : vignette["rungs"]) {
-        CHECK(rung["scenes"][0]["costs"].size() == 2);
-        CHECK(rung["scenes"][0]["costs"][0]["ms"]["rounds"] == 2);
+    for (const Json& level : vignette["levels"]) {
+        CHECK(level["scenes"][0]["costs"].size() == 2);
+        CHECK(level["scenes"][0]["costs"][0]["ms"]["rounds"] == 2);
     }
-    CHECK(json["effects"][1]["rungs"].size() == 1); // tonemap has no levels
+    CHECK(json["effects"][1]["levels"].size() == 1); // tonemap has no levels
 
     for (const char* name : {"study.csv", "metrics.csv", "growth.csv", "curves.json", "index.html",
                              "pictures/vignette-given.png", "pictures/tonemap-given.png"})
@@ -115,7 +115,7 @@ TEST_CASE("an effect that no truth and no entry of the study knows gets times on
     CHECK_THAT(outcome.out, Catch::Contains("tint: its only level takes"));
     CHECK_THAT(outcome.out, Catch::Contains("no truth of it is known"));
     const Json json = Json::parse(file_bytes(folder / "study/study.json"));
-    CHECK(json["effects"][0]["rungs"][0]["error"].is_null());
+    CHECK(json["effects"][0]["levels"][0]["error"].is_null());
     CHECK(Json::parse(file_bytes(folder / "study/curves.json"))["effects"].empty());
 }
 
@@ -126,11 +126,11 @@ TEST_CASE("taps are what the effect's shaders read; where they can't count, a no
     INFO(outcome.err);
     REQUIRE(outcome.status == 0);
     const Json effects = Json::parse(file_bytes(folder / "study/study.json"))["effects"];
-    CHECK(effects[0]["rungs"][0]["taps_per_pixel"] == 0.0); // in one pass with the encoding
+    CHECK(effects[0]["levels"][0]["taps_per_pixel"] == 0.0); // in one pass with the encoding
     // Two passes of five, at half the size and at full size, and one read of what came out.
-    CHECK(effects[1]["rungs"][0]["taps_per_pixel"] == 2 * 5 * 0.25 + 1);
-    CHECK(effects[1]["rungs"][1]["taps_per_pixel"] == 2 * 5 + 1.0);
-    CHECK(effects[2]["rungs"][0]["taps_per_pixel"].is_null());
+    CHECK(effects[1]["levels"][0]["taps_per_pixel"] == 2 * 5 * 0.25 + 1);
+    CHECK(effects[1]["levels"][1]["taps_per_pixel"] == 2 * 5 + 1.0);
+    CHECK(effects[2]["levels"][0]["taps_per_pixel"].is_null());
     CHECK_THAT(effects[2]["notes"].dump(), Catch::Contains("taps are not known: "));
     CHECK_THAT(outcome.out, Catch::Contains("(taps are not known: "));
 }

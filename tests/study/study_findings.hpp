@@ -7,16 +7,16 @@
 
 namespace postfx::testing {
 
-/// A rung that takes `ms` on every scene and is `error` from the truth there. It reads 4 times per pixel on the first,
+/// A level that takes `ms` on every scene and is `error` from the truth there. It reads 4 times per pixel on the first,
 /// 6.5 times on the second.
-inline host::study::Rung made_rung(const std::string& level, double ms, double error, int scenes = 2) {
+inline host::study::Level made_level(const std::string& id, double ms, double error, int scenes = 2) {
     using namespace host::study;
-    Rung rung;
-    rung.level = level;
-    rung.passes = 1;
-    rung.bytes_written = 8;
+    Level level;
+    level.id = id;
+    level.passes = 1;
+    level.bytes_written = 8;
     for (int i = 0; i < scenes; ++i) {
-        RungOnScene on_scene;
+        LevelOnScene on_scene;
         on_scene.errors["scene"] = {error, error / 2};
         for (const auto& [width, height, scale] : {std::tuple(1000, 1000, 1.0), std::tuple(500, 500, 0.25)}) {
             const double here = ms * scale;
@@ -26,12 +26,12 @@ inline host::study::Rung made_rung(const std::string& level, double ms, double e
                                       .copies = {here / 2, 0.99 * here / 2, 1.01 * here / 2, 11}});
         }
         on_scene.taps = 4 + 2.5 * i;
-        rung.scenes.push_back(on_scene);
+        level.scenes.push_back(on_scene);
     }
-    return rung;
+    return level;
 }
 
-inline host::study::EffectFindings made_effect(std::vector<host::study::Rung> rungs,
+inline host::study::EffectFindings made_effect(std::vector<host::study::Level> levels,
                                                double own_error = 0.001) {
     using namespace host::study;
     EffectFindings effect;
@@ -47,7 +47,7 @@ inline host::study::EffectFindings made_effect(std::vector<host::study::Rung> ru
         scene.truths.push_back(
             {.kind = "scene", .description = "512 rays", .samples = 512, .own_error = own_error});
     }
-    effect.rungs = std::move(rungs);
+    effect.levels = std::move(levels);
     return effect;
 }
 

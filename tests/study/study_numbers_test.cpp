@@ -1,4 +1,4 @@
-// Laws through points, spreads, which rungs are worth having, the curve that a budget gets.
+// Laws through points, spreads, which levels are worth having, the curve that a budget gets.
 #include "study_findings.hpp"
 
 #include <catch2/catch.hpp>
@@ -28,12 +28,12 @@ Points power_law(double factor, double exponent, std::vector<double> xs) {
 std::vector<std::string> names(const EffectFindings& effect, const std::vector<std::size_t>& indices) {
     std::vector<std::string> result;
     for (const std::size_t i : indices)
-        result.push_back(effect.rungs[i].level);
+        result.push_back(effect.levels[i].id);
     return result;
 }
 
-EffectFindings concluded(std::vector<Rung> rungs, double own_error = 0.001) {
-    EffectFindings effect = made_effect(std::move(rungs), own_error);
+EffectFindings concluded(std::vector<Level> levels, double own_error = 0.001) {
+    EffectFindings effect = made_effect(std::move(levels), own_error);
     conclude(effect);
     return effect;
 }
@@ -100,10 +100,10 @@ TEST_CASE("a spread is of its samples, and more rounds make the median surer") {
     CHECK(spread_of({}).rounds == 0);
 }
 
-TEST_CASE("a rung is dominated by what is better in one and no worse in the other") {
+TEST_CASE("a level is dominated by what is better in one and no worse in the other") {
     const EffectFindings effect =
-        concluded({made_rung("low", 1, 0.2), made_rung("medium", 2, 0.1), made_rung("high", 4, 0.12),
-                   made_rung("ultra", 8, 0.02), made_rung("classic", 3, 0.4)});
+        concluded({made_level("low", 1, 0.2), made_level("medium", 2, 0.1), made_level("high", 4, 0.12),
+                   made_level("ultra", 8, 0.02), made_level("classic", 3, 0.4)});
     CHECK(effect.find("low")->dominated_by.empty());
     CHECK(effect.find("medium")->dominated_by.empty());
     CHECK(effect.find("high")->dominated_by == "medium");
@@ -117,9 +117,9 @@ TEST_CASE("a rung is dominated by what is better in one and no worse in the othe
 }
 
 TEST_CASE("what noise does not tell apart does not dominate") {
-    Rung blurry = made_rung("blurry", 2.1, 0.1), plain = made_rung("plain", 2, 0.1);
-    for (Rung* rung : {&blurry, &plain}) {
-        for (RungOnScene& scene : rung->scenes) {
+    Level blurry = made_level("blurry", 2.1, 0.1), plain = made_level("plain", 2, 0.1);
+    for (Level* level : {&blurry, &plain}) {
+        for (LevelOnScene& scene : level->scenes) {
             scene.costs[0].ms.p10 = 1;
             scene.costs[0].ms.p90 = 3;
         }
@@ -131,14 +131,14 @@ TEST_CASE("what noise does not tell apart does not dominate") {
     CHECK(names(effect, curve_of(effect)) == std::vector<std::string>{"plain"});
 
     // Without the noise the same times decide.
-    effect = concluded({made_rung("plain", 2, 0.1), made_rung("blurry", 2.1, 0.1)});
+    effect = concluded({made_level("plain", 2, 0.1), made_level("blurry", 2.1, 0.1)});
     CHECK(effect.find("blurry")->dominated_by == "plain");
 }
 
 TEST_CASE("below the truth's own error all are the same") {
-    EffectFindings effect = concluded({made_rung("high", 4, 0.008), made_rung("ultra", 8, 0.004)}, 0.001);
+    EffectFindings effect = concluded({made_level("high", 4, 0.008), made_level("ultra", 8, 0.004)}, 0.001);
     CHECK(effect.find("ultra")->dominated_by.empty());
-    effect = concluded({made_rung("high", 4, 0.008), made_rung("ultra", 8, 0.004)}, 0.01);
+    effect = concluded({made_level("high", 4, 0.008), made_level("ultra", 8, 0.004)}, 0.01);
     CHECK(effect.find("ultra")->dominated_by == "high");
 }
 
@@ -148,8 +148,8 @@ TEST_CASE("the hull is what a string pulled tight from below touches") {
     CHECK(lower_hull({{1, 1}}) == std::vector<std::size_t>{0});
     CHECK(lower_hull({}).empty());
     // In logarithms: 1 ms and 0.2, 2 and 0.1, 4 and 0.05 lie on a line, 3 and 0.1 above it.
-    const EffectFindings effect = concluded({made_rung("low", 1, 0.2), made_rung("medium", 3, 0.1),
-                                             made_rung("high", 4, 0.05), made_rung("ultra", 16, 0.04)});
+    const EffectFindings effect = concluded({made_level("low", 1, 0.2), made_level("medium", 3, 0.1),
+                                             made_level("high", 4, 0.05), made_level("ultra", 16, 0.04)});
     CHECK(effect.find("low")->on_hull);
     CHECK_FALSE(effect.find("medium")->on_hull);
     CHECK(effect.find("high")->on_hull);
@@ -157,34 +157,34 @@ TEST_CASE("the hull is what a string pulled tight from below touches") {
 }
 
 TEST_CASE("without a truth of pixels the error is the metric that stands for it, without any there is none") {
-    EffectFindings effect = made_effect({made_rung("low", 1, 0.2), made_rung("high", 4, 0.1)});
+    EffectFindings effect = made_effect({made_level("low", 1, 0.2), made_level("high", 4, 0.1)});
     effect.judged_by = "";
     conclude(effect);
-    CHECK_FALSE(effect.rungs[0].error.has_value());
+    CHECK_FALSE(effect.levels[0].error.has_value());
     CHECK(curve_of(effect).empty());
     CHECK(curves_of(made_findings(effect)).effects.empty());
 
     effect.metrics = {{"speckle", "px", "", false}, {"strength_error", "", "", true}};
-    effect.rungs[0].metrics = {5, 0.3};
-    effect.rungs[1].metrics = {5, 0.02};
+    effect.levels[0].metrics = {5, 0.3};
+    effect.levels[1].metrics = {5, 0.02};
     conclude(effect);
-    CHECK(effect.rungs[0].error == 0.3);
-    CHECK(effect.rungs[1].error == 0.02);
+    CHECK(effect.levels[0].error == 0.3);
+    CHECK(effect.levels[1].error == 0.02);
 }
 
 TEST_CASE("a curve is of the scenes' mean time, also where one is many times slower") {
-    EffectFindings effect = made_effect({made_rung("low", 1, 0.2)});
-    for (auto& cost : effect.rungs[0].scenes[1].costs)
+    EffectFindings effect = made_effect({made_level("low", 1, 0.2)});
+    for (auto& cost : effect.levels[0].scenes[1].costs)
         cost.ms.median *= 99;
     conclude(effect);
-    CHECK(effect.rungs[0].ms.median == Approx(50));
-    CHECK(effect.rungs[0].time.at(1) == Approx(50));
-    CHECK(effect.rungs[0].time.at(0.25) == Approx(12.5));
+    CHECK(effect.levels[0].ms.median == Approx(50));
+    CHECK(effect.levels[0].time.at(1) == Approx(50));
+    CHECK(effect.levels[0].time.at(0.25) == Approx(12.5));
 }
 
 TEST_CASE("curves have what a budget reads: levels in order, with both numbers of time") {
-    const EffectFindings effect = concluded({made_rung("classic", 0.5, 0.4), made_rung("high", 4, 0.05),
-                                             made_rung("low", 1, 0.2), made_rung("slow", 5, 0.06)});
+    const EffectFindings effect = concluded({made_level("classic", 0.5, 0.4), made_level("high", 4, 0.05),
+                                             made_level("low", 1, 0.2), made_level("slow", 5, 0.06)});
     const postfx::Curves curves = curves_of(made_findings(effect));
     CHECK(curves.device == "paper");
     CHECK(curves.base.ms_per_megapixel == 2);

@@ -27,8 +27,8 @@ using namespace postfx::testing;
 namespace {
 
 EffectFindings ladder() {
-    EffectFindings effect = made_effect({made_rung("medium", 10, 0.08), made_rung("high", 16, 0.02),
-                                         made_rung("ultra", 40, 0.05), made_rung("classic", 12, 0.4)});
+    EffectFindings effect = made_effect({made_level("medium", 10, 0.08), made_level("high", 16, 0.02),
+                                         made_level("ultra", 40, 0.05), made_level("classic", 12, 0.4)});
     effect.thumbnails.push_back({"given", 2, 1, {0, 0, 0, 255, 255, 255}});
     effect.growth.push_back({.over = "radius",
                              .scene = "attic",
@@ -78,7 +78,7 @@ TEST_CASE("sentences say what the numbers are") {
     CHECK(says(sentences, "Time grows with the radius to the power of: high 1.00."));
 }
 
-TEST_CASE("sentences of the best that inputs allow, of exact rungs, and of none that is known") {
+TEST_CASE("sentences of the best that inputs allow, of exact levels, and of none that is known") {
     EffectFindings effect = ladder();
     for (SceneFindings& scene : effect.scenes)
         scene.inputs_error = 0.015;
@@ -86,14 +86,14 @@ TEST_CASE("sentences of the best that inputs allow, of exact rungs, and of none 
                                      "of what the effect is given is "
                                      "itself 1.5 % away; the truth itself is known to 0.1 %."));
 
-    EffectFindings exact = made_effect({made_rung("low", 1, 0.1), made_rung("high", 2, 0)}, 0);
+    EffectFindings exact = made_effect({made_level("low", 1, 0.1), made_level("high", 2, 0)}, 0);
     conclude(exact);
     CHECK(sentences_of(exact)[0]
           == "haze: low is 10 % away from the truth and takes 1.0 ms; high is exact where low is not for "
              "2.0x the "
              "time.");
 
-    EffectFindings unknown = made_effect({made_rung("", 3, 0)});
+    EffectFindings unknown = made_effect({made_level("", 3, 0)});
     unknown.judged_by = "";
     conclude(unknown);
     CHECK(sentences_of(unknown)[0]
@@ -113,10 +113,10 @@ TEST_CASE("numbers are as long as they mean something") {
     CHECK(tick_text(0.002) == "0.002");
 }
 
-TEST_CASE("every effect, scene and rung has a line of CSV with all its columns") {
+TEST_CASE("every effect, scene and level has a line of CSV with all its columns") {
     EffectFindings effect = ladder();
-    effect.rungs[0].scenes[0].skipped = "nothing, \"really\"";
-    effect.rungs[1].scenes[1].errors["scene"].flip = std::numeric_limits<double>::infinity();
+    effect.levels[0].scenes[0].skipped = "nothing, \"really\"";
+    effect.levels[1].scenes[1].errors["scene"].flip = std::numeric_limits<double>::infinity();
     const std::vector<std::string> lines = lines_of(findings_csv(made_findings(effect)));
     REQUIRE(lines.size() == 1 + 2 * 4);
     const auto columns = std::count(lines[0].begin(), lines[0].end(), ',');
@@ -138,11 +138,11 @@ TEST_CASE("every effect, scene and rung has a line of CSV with all its columns")
     CHECK(growth[2] == "haze,radius,attic,high,4,2,0.2,1,1");
 }
 
-TEST_CASE("JSON holds conditions, rungs, verdicts and what failed; what is not finite is null") {
+TEST_CASE("JSON holds conditions, levels, verdicts and what failed; what is not finite is null") {
     EffectFindings effect = ladder();
     effect.metrics = {{"edge", "px", "where an edge is", false}};
-    for (Rung& rung : effect.rungs)
-        rung.metrics = {std::nan("")};
+    for (Level& level : effect.levels)
+        level.metrics = {std::nan("")};
     Findings findings = made_findings(effect);
     findings.failures.push_back({"mist", "no such lamp"});
     const auto json = findings_json(findings);
@@ -151,15 +151,15 @@ TEST_CASE("JSON holds conditions, rungs, verdicts and what failed; what is not f
     CHECK(json["failures"][0]["effect"] == "mist");
     const auto& haze = json["effects"][0];
     CHECK(haze["curve"] == nlohmann::ordered_json({"medium", "high"}));
-    CHECK(haze["rungs"][2]["dominated_by"] == "high");
-    CHECK(haze["rungs"][0]["metrics"]["edge"].is_null());
-    CHECK(haze["rungs"][0]["scenes"][1]["scene"] == "cellar");
-    CHECK(haze["rungs"][0]["scenes"][1]["costs"][0]["ms"]["rounds"] == 11);
-    CHECK(haze["rungs"][0]["scenes"][1]["errors"]["scene"]["flip"] == 0.04);
+    CHECK(haze["levels"][2]["dominated_by"] == "high");
+    CHECK(haze["levels"][0]["metrics"]["edge"].is_null());
+    CHECK(haze["levels"][0]["scenes"][1]["scene"] == "cellar");
+    CHECK(haze["levels"][0]["scenes"][1]["costs"][0]["ms"]["rounds"] == 11);
+    CHECK(haze["levels"][0]["scenes"][1]["errors"]["scene"]["flip"] == 0.04);
     CHECK(haze["scenes"][0]["truths"][0]["own_error"] == 0.001);
     CHECK(haze["growth"][0]["curves"][0]["time_exponent"] == 1.0);
-    CHECK(haze["rungs"][0]["taps_per_pixel"] == 5.25);
-    CHECK(haze["rungs"][0]["scenes"][1]["taps_per_pixel"] == 6.5);
+    CHECK(haze["levels"][0]["taps_per_pixel"] == 5.25);
+    CHECK(haze["levels"][0]["scenes"][1]["taps_per_pixel"] == 6.5);
 }
 
 TEST_CASE("logarithmic axes hold all values and name some of them") {
@@ -208,7 +208,7 @@ TEST_CASE("labels of marks that lie close together do not hide each other") {
     CHECK(ends.back().y <= 280);
 }
 
-TEST_CASE("plots show every rung, dominated ones hollow, and the hull") {
+TEST_CASE("plots show every level, dominated ones hollow, and the hull") {
     const std::vector<EffectPlot> plots = error_plots(ladder());
     REQUIRE(plots.size() == 2); // from the truth, and FLIP
     const std::string& svg = plots[0].svg;
@@ -224,7 +224,7 @@ TEST_CASE("plots show every rung, dominated ones hollow, and the hull") {
     CHECK(growth_plots(ladder()).size() == 2);
 }
 
-TEST_CASE("floors lie where they are, also below all rungs") {
+TEST_CASE("floors lie where they are, also below all levels") {
     ScatterPlot plot;
     plot.marks = {{.label = "low", .x = 1, .y = 1, .x_low = 1, .x_high = 1}};
     plot.y_floor = 0.3;
@@ -240,8 +240,8 @@ TEST_CASE("floors lie where they are, also below all rungs") {
     CHECK(heights[0] < heights[1]);
 }
 
-TEST_CASE("rungs without a time or an error that can be measured are drawn all the same") {
-    EffectFindings effect = made_effect({made_rung("low", -0.001, 0.1), made_rung("high", 2, 0)}, 0);
+TEST_CASE("levels without a time or an error that can be measured are drawn all the same") {
+    EffectFindings effect = made_effect({made_level("low", -0.001, 0.1), made_level("high", 2, 0)}, 0);
     conclude(effect);
     const std::string svg = error_plots(effect).front().svg;
     CHECK(count_of(svg, "class=\"mark") == 2);
@@ -274,7 +274,7 @@ TEST_CASE("the page needs nothing else and escapes what it is told") {
           == count_of(page, "http://www.w3.org/2000/svg") + count_of(page, "http-equiv"));
     CHECK(page.find("src=\"data:image/png;base64,UE5H\"") != std::string::npos);
     CHECK(page.find("high is 4.0x closer to the truth than medium for 1.6x the time") != std::string::npos);
-    CHECK(count_of(page, "<td>5.25</td>") == 4); // taps of each rung
+    CHECK(count_of(page, "<td>5.25</td>") == 4); // taps of each level
     CHECK(count_of(page, "<section") == count_of(page, "</section>"));
     CHECK(count_of(page, "<table") == count_of(page, "</table>"));
 }

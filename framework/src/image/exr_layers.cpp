@@ -52,7 +52,7 @@ public:
         const bool main = make_main();
         if (group_.count({"X", "Y", "Z"}) == 3 && (main || !group_.has("w")))
             add(main ? joined(group_.name, "X,Y,Z") : group_.name, Shape::vector, {"X", "Y", "Z"});
-        else if (!main && !group_.name.empty() && belongs_together())
+        else if (!make_vectors() && !main && !group_.name.empty() && belongs_together())
             add(group_.name, group_.rest.size() == 1 ? Shape::single : Shape::other, components());
         for (const std::string& component : components()) {
             const std::string name = after_last_dot(group_.rest.at(component).name);
@@ -77,6 +77,28 @@ private:
         if (!group_.name.empty() && !alpha) return false;
         add(group_.name, Shape::grey, with_alpha({"Y"}));
         return true;
+    }
+
+    /// Vectors whose components are channels of names of their own: "Nx", "Ny" and "Nz". Not "Px" and so on, of which "Pz"
+    /// is a depth by itself.
+    bool make_vectors() {
+        bool any = false;
+        for (const std::string& x : components()) {
+            std::string stem = x.substr(0, x.size() - 1);
+            if (stem.empty() || lower(stem) == "p" || lower(x).back() != 'x') continue;
+            const auto sibling = [&](int steps) { return stem + static_cast<char>(x.back() + steps); };
+            const std::string y = sibling(1), z = sibling(2);
+            if (!has_all({y, z})) continue;
+            while (stem.size() > 1 && (stem.back() == '_' || stem.back() == '-'))
+                stem.pop_back();
+            add(joined(group_.name, stem), Shape::vector, {x, y, z});
+            any = true;
+        }
+        return any;
+    }
+
+    bool has_all(const std::vector<std::string>& components) const {
+        return group_.count(components) == static_cast<int>(components.size());
     }
 
     /// A depth beside something else (depth.Z and depth.Zback) is a layer of its own.

@@ -204,7 +204,8 @@ void write_file_atomically(const std::filesystem::path& file, const std::string&
         return;
     }
     std::error_code ignored;
-    const auto type = std::filesystem::status(file, ignored).type();
+    const std::filesystem::file_status before = std::filesystem::status(file, ignored);
+    const auto type = before.type();
     using std::filesystem::file_type;
     if (type == file_type::directory) fail_writing(file, EISDIR);
     // A device or a pipe can't be replaced and never holds half a file.
@@ -220,6 +221,7 @@ void write_file_atomically(const std::filesystem::path& file, const std::string&
     const Path beside = name_beside(target);
     OutputDescriptor output(::open(beside.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666));
     if (!output.is_open()) fail_writing(file, errno);
+    if (type == file_type::regular) std::filesystem::permissions(beside, before.permissions(), ignored);
     if (output.write_and_close(bytes) && ::rename(beside.c_str(), target.c_str()) == 0) return;
     const int code = errno;
     ::unlink(beside.c_str());

@@ -30,8 +30,8 @@ constexpr double share_of_samples = 0.125;
 /// Those that may be drawn: by what a draw of them is expected to take.
 std::vector<std::size_t> affordable(const EffectFindings& findings, double limit_ms, double megapixels) {
     std::vector<std::size_t> indices;
-    for (std::size_t i = 0; i < findings.rungs.size(); ++i) {
-        if (findings.rungs[i].time.at(megapixels) <= limit_ms) indices.push_back(i);
+    for (std::size_t i = 0; i < findings.levels.size(); ++i) {
+        if (findings.levels[i].time.at(megapixels) <= limit_ms) indices.push_back(i);
     }
     return indices;
 }
@@ -51,15 +51,15 @@ void fit(Growth& growth) {
 
 std::vector<GrowthCurve> curves_for(const EffectFindings& findings) {
     std::vector<GrowthCurve> curves;
-    for (const Rung& rung : findings.rungs)
-        curves.push_back({.level = rung.level, .points = {}, .time_exponent = {}, .error_exponent = {}});
+    for (const Level& level : findings.levels)
+        curves.push_back({.level = level.id, .points = {}, .time_exponent = {}, .error_exponent = {}});
     return curves;
 }
 
 void leave_out_slow(Growth& growth, const EffectFindings& findings, const std::vector<std::size_t>& drawn) {
-    for (std::size_t i = 0; i < findings.rungs.size(); ++i) {
+    for (std::size_t i = 0; i < findings.levels.size(); ++i) {
         if (std::find(drawn.begin(), drawn.end(), i) == drawn.end())
-            growth.left_out.push_back(findings.rungs[i].name());
+            growth.left_out.push_back(findings.levels[i].name());
     }
 }
 
@@ -80,7 +80,7 @@ Growth over_pixels(const GrowthInputs& inputs, const EffectFindings& findings) {
                   .left_out = {}};
     for (const Size& size : growing_sizes) {
         const double megapixels = 1e-6 * size.width * size.height;
-        // The whole of a size may take as much as a draw of a rung at the size of times, many times over.
+        // The whole of a size may take as much as a draw of a level at the size of times, many times over.
         const auto drawn = affordable(findings, 4 * inputs.limit_ms, megapixels);
         if (&size == &growing_sizes[0]) leave_out_slow(growth, findings, drawn);
         if (drawn.empty()) continue;
@@ -95,7 +95,7 @@ Growth over_pixels(const GrowthInputs& inputs, const EffectFindings& findings) {
     return growth;
 }
 
-/// Errors of the chosen rungs at one radius, from the truth of that radius.
+/// Errors of the chosen levels at one radius, from the truth of that radius.
 std::vector<std::optional<double>> errors_at(const GrowthInputs& inputs, const View& view,
                                              const std::string& kind,
                                              const std::vector<ChainEntry>& entries) {

@@ -13,7 +13,7 @@ namespace postfx::host::study {
 
 struct GrowthInputs {
     StudyScene& scene;
-    std::vector<ChainEntry> entries; ///< one per rung
+    std::vector<ChainEntry> entries; ///< one per level
     std::vector<ChainEntry>
         growing_entries; ///< the same, with the values that they have while the radius grows
     std::optional<RadiusSpec> radius;
@@ -21,10 +21,10 @@ struct GrowthInputs {
     Size picture, time_size;
     TruthOptions truths;
     TimeOptions times;
-    double limit_ms; ///< rungs that take longer are left out
+    double limit_ms; ///< levels that take longer are left out
 };
 
-/// Over the radius, if the effect has one, and over the number of pixels. `findings` tells what rungs cost.
+/// Over the radius, if the effect has one, and over the number of pixels. `findings` tells what levels cost.
 std::vector<Growth> find_growth(const GrowthInputs& inputs, const EffectFindings& findings);
 
 } // namespace postfx::host::study

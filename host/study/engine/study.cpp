@@ -30,18 +30,18 @@ std::vector<ChainEntry> every_level(const ChainEntry& entry) {
     return entries;
 }
 
-std::vector<Rung> rungs_of(const EffectInfo& effect) {
-    std::vector<Rung> rungs;
-    for (const LevelInfo& level : effect.levels) {
-        Rung& rung = rungs.emplace_back();
-        rung.level = level.id;
-        rung.help = level.help;
+std::vector<Level> levels_of(const EffectInfo& effect) {
+    std::vector<Level> levels;
+    for (const LevelInfo& info : effect.levels) {
+        Level& level = levels.emplace_back();
+        level.id = info.id;
+        level.help = info.help;
     }
-    if (rungs.empty()) rungs.emplace_back();
-    return rungs;
+    if (levels.empty()) levels.emplace_back();
+    return levels;
 }
 
-/// The kind of truth that the order of rungs is from; "" when there is none of pixels in every scene.
+/// The kind of truth that the order of levels is from; "" when there is none of pixels in every scene.
 std::string judge_of(const std::vector<SceneFindings>& scenes, const std::string& wish) {
     std::vector<std::string> kinds = {wish, "scene", "layer"};
     for (const std::string& kind : kinds) {
@@ -108,7 +108,7 @@ EffectFindings Study::run(const EffectInfo& effect) {
     findings.values = spec.values;
     findings.picture_size = fmt::format("{}x{}", picture.width, picture.height);
     findings.metrics = metrics_of(effect.id);
-    findings.rungs = rungs_of(effect);
+    findings.levels = levels_of(effect);
     for (const std::string& name : options_.scenes.empty() ? spec.scenes : options_.scenes) {
         at_hand_.push_back(scene(name));
         SceneFindings& scene_findings = findings.scenes.emplace_back();
@@ -117,8 +117,8 @@ EffectFindings Study::run(const EffectInfo& effect) {
         views_.push_back(std::make_unique<View>(*at_hand_.back(), effect, picture, 4));
     }
     for (std::size_t i = 0; i < entries.size(); ++i) {
-        findings.rungs[i].scenes.resize(findings.scenes.size());
-        findings.rungs[i].metrics = measure_metrics(findings.metrics, entries[i], findings.notes);
+        findings.levels[i].scenes.resize(findings.scenes.size());
+        findings.levels[i].metrics = measure_metrics(findings.metrics, entries[i], findings.notes);
     }
     find_errors(findings, entries);
     find_times(findings, effect, entries);
@@ -170,10 +170,10 @@ void Study::find_errors(EffectFindings& findings, const std::vector<ChainEntry>&
         for (std::size_t i = 0; i < entries.size(); ++i) {
             StopOnInterrupt::check();
             pictures_[s].push_back(picture_of(entries[i], *views_[s]));
-            findings.rungs[i].scenes[s].skipped = pictures_[s][i].skipped;
+            findings.levels[i].scenes[s].skipped = pictures_[s][i].skipped;
             for (const SummedTruth& truth : truths[s].summed) {
                 if (truth.facts.statistics) continue;
-                findings.rungs[i].scenes[s].errors[truth.facts.kind] =
+                findings.levels[i].scenes[s].errors[truth.facts.kind] =
                     error_of(pictures_[s][i].light, truth.picture, *views_[s]);
             }
             progress.advance();
@@ -190,7 +190,7 @@ void Study::find_steps(EffectFindings& findings) {
         for (std::size_t s = 0; s < pictures_.size(); ++s)
             sum +=
                 mean_of(flip_map(pictures_[s][curve[k]].light, pictures_[s][curve[k + 1]].light, *views_[s]));
-        findings.rungs[curve[k]].step_to_next = sum / static_cast<double>(pictures_.size());
+        findings.levels[curve[k]].step_to_next = sum / static_cast<double>(pictures_.size());
     }
 }
 
@@ -205,16 +205,16 @@ void Study::find_times(EffectFindings& findings, const EffectInfo& effect,
                                             size.width, size.height));
             base_.emplace_back(1e-6 * size.width * size.height, timed.base_ms.median);
             for (std::size_t i = 0; i < entries.size(); ++i) {
-                RungOnScene& rung = findings.rungs[i].scenes[s];
-                rung.costs.push_back(timed.costs[i]);
+                LevelOnScene& level = findings.levels[i].scenes[s];
+                level.costs.push_back(timed.costs[i]);
                 if (&size != &options_.time_sizes.front()) continue;
                 StopOnInterrupt::check();
-                rung.taps = counted_taps(view, entries[i], findings.notes);
+                level.taps = counted_taps(view, entries[i], findings.notes);
                 if (s > 0) continue;
                 const Work work = work_of(view, entries[i]);
-                findings.rungs[i].passes = work.passes;
-                findings.rungs[i].bytes_written = work.bytes_written;
-                findings.rungs[i].bytes_read = work.bytes_read;
+                findings.levels[i].passes = work.passes;
+                findings.levels[i].bytes_written = work.bytes_written;
+                findings.levels[i].bytes_read = work.bytes_read;
             }
         }
     }

@@ -63,7 +63,7 @@ void add_thumbnails(EffectFindings& findings, const View& view, const std::vecto
     if (!truth) {
         for (std::size_t i = 0; i < pictures.size(); ++i)
             findings.thumbnails.push_back(
-                picture_thumbnail(findings.rungs[i].level, view.shown(pictures[i].light)));
+                picture_thumbnail(findings.levels[i].id, view.shown(pictures[i].light)));
         return;
     }
     findings.thumbnails.push_back(picture_thumbnail("truth", view.shown(*truth)));
@@ -72,7 +72,7 @@ void add_thumbnails(EffectFindings& findings, const View& view, const std::vecto
         maps.push_back(smaller(flip_map(picture.light, *truth, view)));
     findings.heat_white = nearly_largest(maps);
     for (std::size_t i = 0; i < maps.size(); ++i)
-        findings.thumbnails.push_back(map_thumbnail(findings.rungs[i].level, maps[i], findings.heat_white));
+        findings.thumbnails.push_back(map_thumbnail(findings.levels[i].id, maps[i], findings.heat_white));
 }
 
 } // namespace postfx::host::study
