@@ -40,14 +40,14 @@ std::string MetBudget::json() const {
     return json.dump(2);
 }
 
-std::optional<MetBudget> meet_budget(Chain& chain, const Facts& facts, const BudgetSource& source,
-                                     const TrialInputs& inputs) {
+std::optional<MetBudget> meet_budget(Chain& chain, const SceneFacts& facts, const PlanOptions& options,
+                                     const BudgetSource& source, const TrialInputs& inputs) {
     if (!chain.budget) return std::nullopt;
     FoundCurves found = find_curves(source.curves);
-    BudgetQuestion question = budget_question(chain, found.curves, Planner().plan(chain, facts));
+    BudgetQuestion question = budget_question(chain, found.curves, Planner().plan(chain, facts, options));
     LevelTrial trial;
     if (!source.by_curves) {
-        trial = try_levels(chain, question, *chain.budget, facts, inputs);
+        trial = try_levels(chain, question, *chain.budget, facts, options, inputs);
         question = in_scene(std::move(question), trial);
     }
     BudgetAnswer answer = LevelChooser(question).best(*chain.budget);

@@ -33,9 +33,9 @@ struct MetBudget {
     std::string json() const;
 };
 
-/// Set the chain's levels to what its budget buys in a picture of these facts; nothing happens to a chain without a
-/// budget.
-std::optional<MetBudget> meet_budget(Chain& chain, const Facts& facts, const BudgetSource& source,
-                                     const TrialInputs& inputs);
+/// Set the chain's levels to what its budget buys in a picture of these facts and options; nothing happens to a chain
+/// without a budget.
+std::optional<MetBudget> meet_budget(Chain& chain, const SceneFacts& facts, const PlanOptions& options,
+                                     const BudgetSource& source, const TrialInputs& inputs);
 
 } // namespace postfx::host

@@ -50,7 +50,7 @@ std::vector<std::string> RunningBudget::attachments(const ChainRunner& runner) c
     if (!next_change_) return all;
     Chain chain = runner.chain();
     apply(next_change_->choice, chain);
-    for (const std::string& name : Planner().plan(chain, runner.facts()).attachments) {
+    for (const std::string& name : Planner().plan(chain, runner.facts(), runner.options()).attachments) {
         if (std::find(all.begin(), all.end(), name) == all.end()) all.push_back(name);
     }
     return all;
@@ -89,7 +89,7 @@ void RunningBudget::choose_again(ChainRunner& runner) {
 
 void RunningBudget::try_again(ChainRunner& runner, const TrialInputs& inputs) {
     const BudgetQuestion by_curves = budget_question(runner.chain(), met_.curves.curves, runner.plan());
-    met_.trial = try_levels(runner.chain(), by_curves, met_.budget, runner.facts(), inputs);
+    met_.trial = try_levels(runner.chain(), by_curves, met_.budget, runner.facts(), runner.options(), inputs);
     choose_again(runner);
 }
 

@@ -65,7 +65,8 @@ public:
 
         PictureInput input = picture_options_.read(report_options_.quiet());
         const Written written = written_of(input, output);
-        const Facts facts = facts_of(input, output, written);
+        const SceneFacts facts = facts_of(input);
+        const PlanOptions options = plan_options(output, written);
         std::map<std::string, Image>& images = input.attachments;
         images["color"] = std::move(input.color.image);
 
@@ -83,8 +84,8 @@ public:
         frame.frame = frame_;
         frame.seed = seed_;
         const std::optional<MetBudget> budget =
-            meet_budget(chain, facts, chain_options_.budget_source(), {upload, frame});
-        ChainRunner runner(std::move(chain), facts, formats_of(images));
+            meet_budget(chain, facts, options, chain_options_.budget_source(), {upload, frame});
+        ChainRunner runner(std::move(chain), facts, options, formats_of(images));
         const Textures textures = upload(runner.attachments());
         runner.run(textures, frame, Timing::off, report_options_.watch());
         tell_lines(output.path.string(), write_picture(runner, output, written), false);
@@ -124,19 +125,22 @@ private:
         return written;
     }
 
-    Facts facts_of(const PictureInput& input, const PictureFile& output, const Written& written) const {
-        Facts facts;
-        facts.output = output_for(output);
+    static SceneFacts facts_of(const PictureInput& input) {
+        SceneFacts facts;
         facts.width = input.color.image.width;
         facts.height = input.color.image.height;
         facts.color_is_8bit = input.color.coding.plain_srgb && input.color.coding.bits == 8;
-        facts.divide_by_alpha = divides_by_alpha(output, written);
         facts.camera = input.camera;
-        facts.working_format = *format_by_name(working_);
-        facts.fuse = !no_fuse_;
         for (const auto& [name, image] : input.attachments)
             facts.attachments.push_back(name);
         return facts;
+    }
+
+    PlanOptions plan_options(const PictureFile& output, const Written& written) const {
+        return {.output = output_for(output),
+                .working_format = *format_by_name(working_),
+                .divide_by_alpha = divides_by_alpha(output, written),
+                .fuse = !no_fuse_};
     }
 
     static Format format_of(const Image& image) {

@@ -69,8 +69,9 @@ public:
         const Catalog catalog = catalog_options_.load();
         const Scene scene = scene_options_.open();
         ViewBounds bounds(scene);
-        facts_ = scene_options_.facts(scene, bounds, linear_ ? Output::linear : Output::display);
-        facts_.working_format = *format_by_name(format_);
+        facts_ = scene_options_.facts(scene, bounds);
+        plan_options_ = scene_options_.plan_options(linear_ ? Output::linear : Output::display);
+        plan_options_.working_format = *format_by_name(format_);
         const GlSession session;
         SceneRenderers scenes(scene, facts_.width, facts_.height, scene_options_.time());
         frame_.camera = facts_.camera;
@@ -105,20 +106,20 @@ private:
         if (chains_.empty()) chains_.emplace_back("cinematic");
         for (const std::string& name : chains_) {
             Chain chain = read_chain_named(name, catalog);
-            if (std::optional<MetBudget> budget = meet_budget(chain, facts_, {}, tried_on))
+            if (std::optional<MetBudget> budget = meet_budget(chain, facts_, plan_options_, {}, tried_on))
                 budgets_.emplace_back(name, std::move(*budget));
-            const auto add = [&](const std::string& variant, const Facts& facts) {
-                runners_.push_back({name + variant, std::make_unique<ChainRunner>(chain, facts)});
+            const auto add = [&](const std::string& variant, const PlanOptions& options) {
+                runners_.push_back({name + variant, std::make_unique<ChainRunner>(chain, facts_, options)});
             };
-            add("", facts_);
-            Facts other = facts_;
+            add("", plan_options_);
+            PlanOptions other = plan_options_;
             other.fuse = false;
             if (unfused_) add(" (unfused)", other);
-            other = facts_;
+            other = plan_options_;
             other.fold = true;
             if (folded_) add(" (folded)", other);
             chain.skip = Skip::nothing;
-            if (run_all_) add(" (run all)", facts_);
+            if (run_all_) add(" (run all)", plan_options_);
         }
     }
 
@@ -138,12 +139,12 @@ private:
         const auto pass_of = [this](Format format, const std::string& fragment, const std::string& name) {
             return std::make_shared<PlainPass>(facts_.width, facts_.height, format, fragment, name);
         };
-        const auto copy =
-            std::make_shared<PlainPass>(PlainPass::copy(facts_.width, facts_.height, facts_.working_format));
+        const auto copy = std::make_shared<PlainPass>(
+            PlainPass::copy(facts_.width, facts_.height, plan_options_.working_format));
         cases.push_back({"copy pass", [copy, color] { copy->draw(color); }});
         if (with_scene_) cases.push_back(framed({"scene alone", [] {}}, scenes, {}));
         for (const std::string& rival : rivals_) {
-            const auto pass = pass_of(linear_ ? facts_.working_format : Format::rgba8,
+            const auto pass = pass_of(linear_ ? plan_options_.working_format : Format::rgba8,
                                       read_file(rival, max_shader_bytes, "a fragment shader"), rival);
             cases.push_back(framed({rival, [pass, color] { pass->draw(color); }}, scenes, {}));
             compare_with_rival(*pass, rival);
@@ -258,7 +259,8 @@ private:
     bool unfused_ = false, folded_ = false, watch_ = false, passes_ = false, with_scene_ = false,
          run_all_ = false, linear_ = false, json_ = false;
 
-    Facts facts_;
+    SceneFacts facts_;
+    PlanOptions plan_options_;
     FrameInputs frame_;
     Textures textures_;
     std::vector<NamedRunner> runners_;

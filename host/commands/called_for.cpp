@@ -198,9 +198,8 @@ private:
     SceneFindings study(const Scene& scene, Size size, const Catalog& catalog, const Chain& chain,
                         ProgressBar& progress) const {
         ViewBounds bounds(scene);
-        Facts facts = facts_of(scene, bounds, size, time_, Output::display);
-        facts.fold = true;
-        SkippingStudy study(scene, facts, time_);
+        const SceneFacts facts = facts_of(scene, bounds, size, time_);
+        SkippingStudy study(scene, facts, {.fold = true}, time_);
         study.add("no effect", {});
         for (const EffectPtr& effect : catalog.effects()) {
             Chain alone;
@@ -210,7 +209,7 @@ private:
         }
         study.add("chain " + chain_, chain);
         study.measure(samples_, progress);
-        return {scene.name, scene.description, facts.scene, study.result()};
+        return {scene.name, scene.description, facts.bounds, study.result()};
     }
 
     /// What was typed, but for where the page went.

@@ -49,13 +49,14 @@ public:
         Chain chain = chain_options_.read(catalog);
         const Scene scene = scene_options_.open();
         ViewBounds bounds(scene);
-        Facts facts = scene_options_.facts(scene, bounds, output_for({output_}));
+        const SceneFacts facts = scene_options_.facts(scene, bounds);
+        const PlanOptions options = scene_options_.plan_options(output_for({output_}));
         // Drawn is only for --measure, and to meet a budget.
         std::optional<GlSession> session;
         if (measure_ || chain.budget) session.emplace();
-        const std::optional<MetBudget> budget = met_budget(chain, scene, facts);
-        if (measure_) return tell_measured(chain, scene, facts, budget, session->device().renderer);
-        const Plan plan = Planner().plan(chain, facts);
+        const std::optional<MetBudget> budget = met_budget(chain, scene, facts, options);
+        if (measure_) return tell_measured(chain, scene, facts, options, budget, session->device().renderer);
+        const Plan plan = Planner().plan(chain, facts, options);
         if (!shader_.empty()) return print_shader(plan);
         Report report = describe(plan);
         report.clock = "none: explain measures only with --measure";
@@ -69,10 +70,11 @@ public:
     }
 
 private:
-    std::optional<MetBudget> met_budget(Chain& chain, const Scene& scene, const Facts& facts) const {
+    std::optional<MetBudget> met_budget(Chain& chain, const Scene& scene, const SceneFacts& facts,
+                                        const PlanOptions& options) const {
         if (!chain.budget) return std::nullopt;
         SceneRenderer renderer(scene);
-        return meet_budget(chain, facts, chain_options_.budget_source(),
+        return meet_budget(chain, facts, options, chain_options_.budget_source(),
                            trial_inputs(renderer, facts, scene_options_.time()));
     }
 
@@ -82,9 +84,10 @@ private:
         return json;
     }
 
-    Status tell_measured(const Chain& chain, const Scene& scene, const Facts& facts,
-                         const std::optional<MetBudget>& budget, const std::string& device) const {
-        SkippingStudy study(scene, facts, scene_options_.time());
+    Status tell_measured(const Chain& chain, const Scene& scene, const SceneFacts& facts,
+                         const PlanOptions& options, const std::optional<MetBudget>& budget,
+                         const std::string& device) const {
+        SkippingStudy study(scene, facts, options, scene_options_.time());
         study.add("chain", chain);
         {
             ProgressBar progress("measuring", samples_ + warm_up_rounds);

@@ -74,15 +74,16 @@ public:
         Chain chain = chain_options_.read(catalog);
         const Scene scene = scene_options_.open();
         ViewBounds bounds(scene);
-        Facts facts = scene_options_.facts(scene, bounds, output_for(output_));
-        facts.working_format = *format_by_name(working_);
+        const SceneFacts facts = scene_options_.facts(scene, bounds);
+        PlanOptions options = scene_options_.plan_options(output_for(output_));
+        options.working_format = *format_by_name(working_);
 
         const GlSession session;
         SceneRenderer renderer(scene, {.samples = samples_});
         const std::optional<MetBudget> budget =
-            meet_budget(chain, facts, chain_options_.budget_source(),
+            meet_budget(chain, facts, options, chain_options_.budget_source(),
                         trial_inputs(renderer, facts, scene_options_.time()));
-        ChainRunner runner(std::move(chain), facts, SceneRenderer::attachment_formats());
+        ChainRunner runner(std::move(chain), facts, options, SceneRenderer::attachment_formats());
         ProgressBar progress("rendering", frames_);
         for (int i = 0; i < frames_; ++i) {
             render_frame(renderer, runner, bounds, i);
@@ -103,11 +104,11 @@ private:
         frame.frame = static_cast<std::uint32_t>(index);
         frame.seed = seed_;
         if (index > 0) {
-            Facts facts = runner.facts();
+            SceneFacts facts = runner.facts();
             look(facts, bounds, renderer.scene().camera_at(frame.time), frame.time);
             runner.replan(facts);
         }
-        const Facts& facts = runner.facts();
+        const SceneFacts& facts = runner.facts();
         frame.camera = facts.camera;
         std::vector<std::string> wanted = runner.attachments();
         for (const auto& [name, file] : saves_) {
@@ -126,7 +127,7 @@ private:
     }
 
     static void save_attachment(std::uint32_t texture, const std::string& name, const fs::path& file,
-                                const Facts& facts) {
+                                const SceneFacts& facts) {
         if (name != "depth") {
             const Image image = gl::read_texture(texture, facts.width, facts.height, Format::rgba32f);
             Image rgb(image.width, image.height, 3);

@@ -24,10 +24,8 @@ Scene SceneOptions::open() const {
     return open_known_scene(default_scene_.empty() ? scene_ : default_scene_, strict_, camera_);
 }
 
-Facts SceneOptions::facts(const Scene& scene, ViewBounds& bounds, Output output) const {
-    Facts facts = facts_of(scene, bounds, parse_size(size_), time_, output);
-    facts.fuse = !no_fuse_;
-    return facts;
+SceneFacts SceneOptions::facts(const Scene& scene, ViewBounds& bounds) const {
+    return facts_of(scene, bounds, parse_size(size_), time_);
 }
 
 } // namespace postfx::host

@@ -24,7 +24,9 @@ public:
     double time() const { return time_; }
 
     /// What is known of a picture of the scene at its time before it is drawn.
-    Facts facts(const Scene& scene, ViewBounds& bounds, Output output) const;
+    SceneFacts facts(const Scene& scene, ViewBounds& bounds) const;
+    /// What is wished of its plan.
+    PlanOptions plan_options(Output output) const { return {.output = output, .fuse = !no_fuse_}; }
 
 private:
     std::string default_scene_, scene_, camera_;

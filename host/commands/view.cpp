@@ -92,15 +92,16 @@ public:
         Chain chain = chain_options_.read(catalog);
         const Scene scene = scene_options_.open();
         ViewBounds bounds(scene);
-        Facts facts = scene_options_.facts(scene, bounds, Output::display);
+        const SceneFacts facts = scene_options_.facts(scene, bounds);
+        const PlanOptions options = scene_options_.plan_options(Output::display);
         if (!output_.empty() && output_for({output_}) != Output::display) {
             throw Error(Place{.file = output_}, "the window's picture is for display: name a .png");
         }
         Window window(facts.width, facts.height, "postfx", debug_build);
         SceneRenderer renderer(scene);
-        std::optional<MetBudget> met = meet_budget(chain, facts, chain_options_.budget_source(),
+        std::optional<MetBudget> met = meet_budget(chain, facts, options, chain_options_.budget_source(),
                                                    trial_inputs(renderer, facts, scene_options_.time()));
-        ChainRunner runner(std::move(chain), facts);
+        ChainRunner runner(std::move(chain), facts, options);
         if (met) fmt::print("{}", met->text());
         if (met) budget_.emplace(std::move(*met), runner);
         fmt::print("{}", help);
@@ -150,7 +151,7 @@ private:
 
     static void follow(ChainRunner& runner, ViewBounds& bounds, const Camera& camera, glm::ivec2 size,
                        double time) {
-        Facts facts = runner.facts();
+        SceneFacts facts = runner.facts();
         facts.width = size.x;
         facts.height = size.y;
         look(facts, bounds, camera, time);

@@ -15,10 +15,10 @@ namespace {
 
 class Tryer {
 public:
-    Tryer(const Chain& chain, const BudgetQuestion& question, const Facts& facts, const TrialInputs& inputs,
-          std::vector<std::size_t> counts)
-        : question_(question), counts_(std::move(counts)), inputs_(inputs), runner_(cheapest(chain), facts),
-          textures_(inputs.draw_scene(attachments_of_all())),
+    Tryer(const Chain& chain, const BudgetQuestion& question, const SceneFacts& facts,
+          const PlanOptions& options, const TrialInputs& inputs, std::vector<std::size_t> counts)
+        : question_(question), counts_(std::move(counts)), inputs_(inputs),
+          runner_(cheapest(chain), facts, options), textures_(inputs.draw_scene(attachments_of_all())),
           progress_("trying levels", 1 + pictures_of_entries()) {}
 
     LevelTrial run() {
@@ -80,7 +80,8 @@ private:
             Chain chain = runner_.chain();
             for (std::size_t i = 1; i < counts_[e]; ++i) {
                 chain.entries[e].level = question_.entries[e].options[i].level;
-                for (const std::string& name : Planner().plan(chain, runner_.facts()).attachments) {
+                for (const std::string& name :
+                     Planner().plan(chain, runner_.facts(), runner_.options()).attachments) {
                     if (std::find(all.begin(), all.end(), name) == all.end()) all.push_back(name);
                 }
             }
@@ -105,19 +106,19 @@ private:
 
 } // namespace
 
-LevelTrial try_levels(const Chain& chain, const BudgetQuestion& question, const Budget& budget, Facts facts,
-                      const TrialInputs& inputs) {
-    facts.output = Output::linear;
-    facts.fold = false; // levels share more programs, and the next trial finds them kept
+LevelTrial try_levels(const Chain& chain, const BudgetQuestion& question, const Budget& budget,
+                      const SceneFacts& facts, PlanOptions options, const TrialInputs& inputs) {
+    options.output = Output::linear;
+    options.fold = false; // levels share more programs, and the next trial finds them kept
     std::vector<std::size_t> counts = options_to_try(question, budget);
     for (std::size_t e = 0; e < counts.size(); ++e) {
         if (chain.entries[e].effect->stage != "scene") counts[e] = 0;
     }
     const bool any = std::any_of(counts.begin(), counts.end(), [](std::size_t count) { return count > 1; });
-    return any ? Tryer(chain, question, facts, inputs, std::move(counts)).run() : LevelTrial{};
+    return any ? Tryer(chain, question, facts, options, inputs, std::move(counts)).run() : LevelTrial{};
 }
 
-TrialInputs trial_inputs(SceneRenderer& renderer, const Facts& facts, double time) {
+TrialInputs trial_inputs(SceneRenderer& renderer, const SceneFacts& facts, double time) {
     TrialInputs inputs;
     inputs.frame.camera = facts.camera;
     inputs.frame.time = time;

@@ -22,10 +22,10 @@ struct TrialInputs {
 /// The chain up to its tone map, with one effect at a time at each level that the budget may have a use for, and the
 /// others at their least exact ones. What stands behind (noise, for one) can't be judged by its pixels and is not tried.
 /// Throws Error.
-LevelTrial try_levels(const Chain& chain, const BudgetQuestion& question, const Budget& budget, Facts facts,
-                      const TrialInputs& inputs);
+LevelTrial try_levels(const Chain& chain, const BudgetQuestion& question, const Budget& budget,
+                      const SceneFacts& facts, PlanOptions options, const TrialInputs& inputs);
 
 /// What levels are tried on: the facts' picture, drawn by `renderer`, which has to stay.
-TrialInputs trial_inputs(SceneRenderer& renderer, const Facts& facts, double time);
+TrialInputs trial_inputs(SceneRenderer& renderer, const SceneFacts& facts, double time);
 
 } // namespace postfx::host

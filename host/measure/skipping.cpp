@@ -39,9 +39,9 @@ nlohmann::ordered_json frame_json(const SkippingStudy::Frame& frame, double copy
 
 } // namespace
 
-SkippingStudy::SkippingStudy(const Scene& scene, Facts facts, double time)
-    : scenes_(scene, facts.width, facts.height, time), facts_(std::move(facts)),
-      copy_(PlainPass::copy(facts_.width, facts_.height, facts_.working_format)) {
+SkippingStudy::SkippingStudy(const Scene& scene, SceneFacts facts, const PlanOptions& options, double time)
+    : scenes_(scene, facts.width, facts.height, time), facts_(std::move(facts)), options_(options),
+      copy_(PlainPass::copy(facts_.width, facts_.height, options_.working_format)) {
     frame_.camera = facts_.camera;
     frame_.time = time;
     const std::uint32_t color = scenes_.draw({}).texture("color");
@@ -61,7 +61,7 @@ std::size_t SkippingStudy::scene_case(const std::vector<std::string>& attachment
 }
 
 SkippingStudy::Side SkippingStudy::make_side(const Chain& chain, const std::string& name) {
-    Side side{std::make_unique<ChainRunner>(chain, facts_), 0, 0};
+    Side side{std::make_unique<ChainRunner>(chain, facts_, options_), 0, 0};
     ChainRunner* runner = side.runner.get();
     side.scene_case = scene_case(runner->attachments());
     const Textures textures = textures_of(scenes_.draw(runner->attachments()));
@@ -77,7 +77,7 @@ void SkippingStudy::add(std::string name, Chain chain) {
     pair.name = std::move(name);
     pair.as_is = make_side(chain, pair.name);
     chain.skip = Skip::nothing;
-    pair.same = same_work(pair.as_is.runner->plan(), Planner().plan(chain, facts_));
+    pair.same = same_work(pair.as_is.runner->plan(), Planner().plan(chain, facts_, options_));
     if (pair.same) {
         pair.run_all.scene_case = pair.as_is.scene_case;
         pair.run_all.chain_case = pair.as_is.chain_case;

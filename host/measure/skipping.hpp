@@ -18,7 +18,7 @@ namespace postfx::host {
 class SkippingStudy {
 public:
     /// `facts` are of the view at `time`.
-    SkippingStudy(const Scene& scene, Facts facts, double time);
+    SkippingStudy(const Scene& scene, SceneFacts facts, const PlanOptions& options, double time);
 
     void add(std::string name, Chain chain);
     /// All that was added, in turns.
@@ -68,7 +68,8 @@ private:
     Frame frame_of(const Side& side, const ChainRunner& runner, bool gpu) const;
 
     SceneRenderers scenes_;
-    Facts facts_;
+    SceneFacts facts_;
+    PlanOptions options_;
     FrameInputs frame_;
     PlainPass copy_;
     std::vector<Case> cases_; ///< copy pass, scene alone, then what was added

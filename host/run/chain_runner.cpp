@@ -14,9 +14,10 @@ std::filesystem::path program_cache() {
 
 } // namespace
 
-ChainRunner::ChainRunner(Chain chain, Facts facts, const std::map<std::string, Format>& formats)
-    : chain_(std::move(chain)), facts_(std::move(facts)), plan_(planner_.plan(chain_, facts_)),
-      executor_(program_cache()) {
+ChainRunner::ChainRunner(Chain chain, SceneFacts facts, const PlanOptions& options,
+                         const std::map<std::string, Format>& formats)
+    : chain_(std::move(chain)), facts_(std::move(facts)), options_(options),
+      plan_(planner_.plan(chain_, facts_, options_)), executor_(program_cache()) {
     std::vector<Format> of_attachments;
     if (!formats.empty()) {
         for (const std::string& name : plan_.attachments)
@@ -25,8 +26,8 @@ ChainRunner::ChainRunner(Chain chain, Facts facts, const std::map<std::string, F
     executor_.prepare(plan_, of_attachments);
 }
 
-void ChainRunner::replan(const Facts& facts) {
-    Plan plan = planner_.plan(chain_, facts);
+void ChainRunner::replan(const SceneFacts& facts) {
+    Plan plan = planner_.plan(chain_, facts, options_);
     executor_.prepare(plan);
     plan_ = std::move(plan);
     facts_ = facts;

@@ -18,7 +18,8 @@ class ChainRunner {
 public:
     /// `formats`: of the attachments, by name. Given, and up to the first run, a second thread compiles too where that
     /// helps (Executor::prepare).
-    ChainRunner(Chain chain, Facts facts, const std::map<std::string, Format>& formats = {});
+    ChainRunner(Chain chain, SceneFacts facts, const PlanOptions& options = {},
+                const std::map<std::string, Format>& formats = {});
 
     /// What the chain reads of the scene, decided before anything is rendered.
     const std::vector<std::string>& attachments() const { return plan_.attachments; }
@@ -26,20 +27,22 @@ public:
     Chain& chain() { return chain_; }
     const Chain& chain() const { return chain_; }
 
-    /// Plan again for another camera or changed values. A failing shader throws and the old plan stays.
-    void replan(const Facts& facts);
+    /// Plan again for another camera or changed values, with the same options. A failing shader throws and the old plan stays.
+    void replan(const SceneFacts& facts);
 
     /// Draw one frame. `textures` must hold what attachments() names. Returns the picture's texture.
     std::uint32_t run(const Textures& textures, const FrameInputs& frame, Timing timing,
                       Watch watch = Watch::off);
 
     Executor& executor() { return executor_; }
-    const Facts& facts() const { return facts_; }
+    const SceneFacts& facts() const { return facts_; }
+    const PlanOptions& options() const { return options_; }
 
 private:
     Planner planner_;
     Chain chain_;
-    Facts facts_;
+    SceneFacts facts_;
+    PlanOptions options_;
     Plan plan_;
     Executor executor_;
     FrameInputs inputs_;

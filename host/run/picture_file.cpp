@@ -42,7 +42,7 @@ std::vector<std::string> write_picture(ChainRunner& runner, const PictureFile& f
     options.bits = file.bits;
     options.quality = file.quality;
     if (written.origin.source) options.origin = &written.origin;
-    if (runner.facts().output == Output::linear) {
+    if (runner.options().output == Output::linear) {
         if (keeps_alpha)
             picture = with_alpha(std::move(picture), written.alpha_of_chain, written.alpha_of_file);
         return write_image(file.path, picture, options);

@@ -34,7 +34,7 @@ struct Written {
     Origin origin{}; ///< the file that the picture is from: an EXR goes back into it
 };
 
-/// Does the chain's last pass have to divide by alpha (Facts::divide_by_alpha)?
+/// Does the chain's last pass have to divide by alpha (PlanOptions::divide_by_alpha)?
 bool divides_by_alpha(const PictureFile& file, const Written& written);
 
 /// Write the last picture of `runner` to `file` by its kind. Returns what could not be kept of the origin, a line each.

@@ -24,19 +24,18 @@ Size parse_size(const std::string& text) {
     return size;
 }
 
-Facts facts_of(const Scene& scene, ViewBounds& bounds, Size size, double time, Output output) {
-    Facts facts;
+SceneFacts facts_of(const Scene& scene, ViewBounds& bounds, Size size, double time) {
+    SceneFacts facts;
     facts.width = size.width;
     facts.height = size.height;
     facts.attachments = SceneRenderer::attachment_names();
-    facts.output = output;
     look(facts, bounds, scene.camera_at(time), time);
     return facts;
 }
 
-void look(Facts& facts, ViewBounds& bounds, const Camera& camera, double time) {
+void look(SceneFacts& facts, ViewBounds& bounds, const Camera& camera, double time) {
     facts.camera = camera;
-    facts.scene = bounds.at(time, camera, facts.width, facts.height);
+    facts.bounds = bounds.at(time, camera, facts.width, facts.height);
 }
 
 Textures textures_of(const SceneFrame& frame) {

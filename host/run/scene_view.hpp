@@ -20,10 +20,10 @@ struct Size {
 Size parse_size(const std::string& text);
 
 /// What is known of a picture by a scene's own camera before it is drawn.
-Facts facts_of(const Scene& scene, ViewBounds& bounds, Size size, double time, Output output);
+SceneFacts facts_of(const Scene& scene, ViewBounds& bounds, Size size, double time);
 
 /// Put another camera into the facts, with what it can see of the scene at that time.
-void look(Facts& facts, ViewBounds& bounds, const Camera& camera, double time);
+void look(SceneFacts& facts, ViewBounds& bounds, const Camera& camera, double time);
 
 /// The frame's textures by attachment name.
 Textures textures_of(const SceneFrame& frame);

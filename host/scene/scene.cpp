@@ -94,24 +94,24 @@ Bounds Scene::bounds(double time) const {
     return result;
 }
 
-SceneFacts Scene::facts() const {
+SceneContents Scene::contents() const {
     const auto shines = [](glm::vec3 color) { return color != glm::vec3(0); };
-    SceneFacts facts;
-    facts.lights = lights.size();
-    facts.ambient = shines(surroundings.ambient_up) || shines(surroundings.ambient_down);
-    facts.sky = shines(surroundings.zenith) || shines(surroundings.horizon) || shines(surroundings.ground)
-                || surroundings.stars > 0 || surroundings.disc.has_value();
-    facts.moves = moves(camera.animation);
+    SceneContents contents;
+    contents.lights = lights.size();
+    contents.ambient = shines(surroundings.ambient_up) || shines(surroundings.ambient_down);
+    contents.sky = shines(surroundings.zenith) || shines(surroundings.horizon) || shines(surroundings.ground)
+                   || surroundings.stars > 0 || surroundings.disc.has_value();
+    contents.moves = moves(camera.animation);
     for (const Node& node : nodes) {
-        facts.moves = facts.moves || moves(node.animation) || node.keys;
+        contents.moves = contents.moves || moves(node.animation) || node.keys;
         for (const Part& part : node.parts) {
-            ++facts.parts;
-            facts.triangles += part.mesh->indices.size() / 3;
-            facts.emitters = facts.emitters || shines(materials[part.material].emission);
-            facts.transparent = facts.transparent || materials[part.material].blended;
+            ++contents.parts;
+            contents.triangles += part.mesh->indices.size() / 3;
+            contents.emitters = contents.emitters || shines(materials[part.material].emission);
+            contents.transparent = contents.transparent || materials[part.material].blended;
         }
     }
-    return facts;
+    return contents;
 }
 
 } // namespace postfx::host

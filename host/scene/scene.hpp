@@ -115,7 +115,7 @@ struct NamedCamera {
     SceneCamera camera;
 };
 
-struct SceneFacts {
+struct SceneContents {
     std::size_t triangles = 0, parts = 0, lights = 0;
     bool emitters = false;    ///< some material emits light
     bool transparent = false; ///< some material is blended
@@ -157,7 +157,7 @@ struct Scene {
     /// The same as a mesh of its own; one without a deformation is returned as it is.
     std::shared_ptr<const Mesh> mesh_at(std::size_t node, const std::shared_ptr<const Mesh>& mesh,
                                         const std::vector<glm::dmat4>& placed, double time) const;
-    SceneFacts facts() const;
+    SceneContents contents() const;
 };
 
 /// A matrix that looks from `position` towards `look_at` down its -z, to world. A view straight along `up` is

@@ -1,4 +1,4 @@
-// Texture reads of every effect at every level: programs that count them (Facts::count_taps) draw the same picture,
+// Texture reads of every effect at every level: programs that count them (PlanOptions::count_taps) draw the same picture,
 // and miss none.
 #include "hard_inputs.hpp"
 
@@ -54,7 +54,7 @@ void check_taps(const Plan& plan, const Report& report) {
 TEST_CASE("counted is uncounted bit for bit and counts every read, for every effect and level") {
     for (const EffectPtr& effect : catalog().effects()) {
         const Input input = ordinary_input(effect->reads, usual_size, Camera::perspective(45, 0.1));
-        Facts counting = facts_of(input);
+        PlanOptions counting = linear_output();
         counting.count_taps = true;
         Planner planner;
         Runner runner;
@@ -64,9 +64,9 @@ TEST_CASE("counted is uncounted bit for bit and counts every read, for every eff
         for (int level = 0; level < levels; ++level) {
             CAPTURE(effect->id, level);
             chain.entries.front().level = level;
-            runner.prepare(planner.plan(chain, facts_of(input)));
+            runner.prepare(planner.plan(chain, facts_of(input), linear_output()));
             const Image plain = runner.draw(input);
-            const Plan plan = planner.plan(chain, counting);
+            const Plan plan = planner.plan(chain, facts_of(input), counting);
             check_text(plan);
             runner.prepare(plan);
             CHECK(same_bits(runner.draw(input), plain));

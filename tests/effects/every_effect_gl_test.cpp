@@ -205,7 +205,8 @@ public:
     void check_runs(int level) {
         const ChainEntry tried = entry(level);
         attempt("defaults", tried, [&] {
-            const PlannedEffect planned = planner_.plan(Chain{{tried}}, facts_of(input())).effects.front();
+            const PlannedEffect planned =
+                planner_.plan(Chain{{tried}}, facts_of(input()), linear_output()).effects.front();
             return planned.status == EffectStatus::skipped ? "skipped: " + planned.reason : std::string();
         });
     }
@@ -215,7 +216,7 @@ public:
 
 private:
     void plan(const ChainEntry& entry, const Input& input, Format working_format) {
-        Plan plan = planner_.plan(Chain{{entry}}, facts_of(input, working_format));
+        Plan plan = planner_.plan(Chain{{entry}}, facts_of(input), linear_output(working_format));
         is_skipped_ = plan.effects.front().status == EffectStatus::skipped;
         runner_.prepare(std::move(plan));
     }

@@ -1,4 +1,4 @@
-// Values compiled into the shaders (Facts::fold) give the picture that values in uniforms give, for every effect.
+// Values compiled into the shaders (PlanOptions::fold) give the picture that values in uniforms give, for every effect.
 #include "hard_inputs.hpp"
 
 #include <catch2/catch.hpp>
@@ -36,15 +36,15 @@ double differing_share(const Image& a, const Image& b) {
 class Both {
 public:
     void check(const ChainEntry& entry, const Input& input) {
-        Facts facts = facts_of(input);
-        const Image live = draw(entry, facts, input);
-        facts.fold = true;
-        CHECK(differing_share(draw(entry, facts, input), live) <= deciding_share);
+        PlanOptions options = linear_output();
+        const Image live = draw(entry, options, input);
+        options.fold = true;
+        CHECK(differing_share(draw(entry, options, input), live) <= deciding_share);
     }
 
 private:
-    Image draw(const ChainEntry& entry, const Facts& facts, const Input& input) {
-        runner_.prepare(planner_.plan(Chain{{entry}}, facts));
+    Image draw(const ChainEntry& entry, const PlanOptions& options, const Input& input) {
+        runner_.prepare(planner_.plan(Chain{{entry}}, facts_of(input), options));
         return runner_.draw(input);
     }
 

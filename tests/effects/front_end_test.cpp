@@ -22,9 +22,8 @@ namespace {
 
 /// Everything that decides which text is assembled: values in uniforms or compiled in, reads counted, stages fused
 /// with the output.
-std::vector<Named<Facts>> forms(const Input& input) {
-    const Facts live = facts_of(input);
-    std::vector<Named<Facts>> forms(4, {"live", live});
+std::vector<Named<PlanOptions>> forms() {
+    std::vector<Named<PlanOptions>> forms(4, {"live", linear_output()});
     forms[1].name = "folded";
     forms[1].thing.fold = true;
     forms[2].name = "counting reads";
@@ -110,14 +109,15 @@ TEST_CASE("a second front end takes every assembled shader of every effect and l
     Shaders shaders;
     Planner planner;
     for (const EffectPtr& effect : catalog().effects()) {
-        for (const auto& [form, facts] : forms(ordinary_input(effect->reads))) {
+        const SceneFacts facts = facts_of(ordinary_input(effect->reads));
+        for (const auto& [form, options] : forms()) {
             Chain chain;
             ChainEntry entry = chain.add(catalog(), effect->id);
             for (const std::string& level : names_of_levels(*effect)) {
                 set_level(entry, level);
                 for (const ChainEntry& variant : variants(entry))
                     shaders.add(fmt::format("{} {}, {}", effect->id, level, form),
-                                planner.plan(Chain{{variant}}, facts));
+                                planner.plan(Chain{{variant}}, facts, options));
             }
         }
     }

@@ -144,7 +144,7 @@ public:
         const auto looks = [&](const Input& input, bool is_twice) {
             Input given = input;
             if (is_display) given.color = shown(given.color);
-            runner_.prepare(planner_.plan(Chain{{entry}}, facts_of(given, Format::rgba16f)));
+            runner_.prepare(planner_.plan(Chain{{entry}}, facts_of(given), linear_output(Format::rgba16f)));
             const auto look = [&](const Image& picture) {
                 const Image small = is_twice ? halved(picture) : picture;
                 return look_of(entry.effect->stage == "scene" ? shown(small) : small);

@@ -73,12 +73,13 @@ public:
     /// Nothing when an effect refuses its values, as it declares that it does; any other error is thrown.
     std::optional<Outcome> run(Chain chain, const Input& input, Skip skip, bool fuse = false) {
         chain.skip = skip;
-        Facts facts = facts_of(input);
-        facts.fuse = fuse;
-        if (knows_bounds) facts.scene = bounds_of(input);
+        SceneFacts facts = facts_of(input);
+        if (knows_bounds) facts.bounds = bounds_of(input);
+        PlanOptions options = linear_output();
+        options.fuse = fuse;
         std::optional<Plan> plan;
         try {
-            plan = planner_.plan(chain, facts);
+            plan = planner_.plan(chain, facts, options);
         } catch (const Refusal& refusal) {
             if (!pinned_.expects(refusal)) throw;
             ++refused;
@@ -423,7 +424,7 @@ TEST_CASE("small changes come out no larger than the effects say") {
         bool is_known = false; // at some of the values
         for (int set = 0; set < 12; ++set) {
             ChainEntry& entry = chain.entries.front();
-            const Facts facts = facts_of(input);
+            const SceneFacts facts = facts_of(input);
             const Codes of_light = codes_before(entry, facts, {1, 0}),
                         of_share = codes_before(entry, facts, {0, 1});
             if (std::isfinite(of_light.per_light)) {

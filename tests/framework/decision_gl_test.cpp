@@ -41,9 +41,9 @@ Scene scene_of(float brightest, double nearest, int width = 67, int height = 41)
 class Film {
 public:
     void set(const Chain& chain, int width, int height, bool fold = false) {
-        Facts facts = facts_of(Image(width, height, 3));
-        facts.fold = fold;
-        plan_ = Planner().plan(chain, facts);
+        PlanOptions options = linear_output();
+        options.fold = fold;
+        plan_ = Planner().plan(chain, facts_of(Image(width, height, 3)), options);
         executor_.prepare(plan_);
     }
     Image frame(const Scene& scene) {
@@ -225,7 +225,7 @@ TEST_CASE("the first frame and the first after a resize are whole") {
 
 TEST_CASE("what is asked twice is counted once") {
     const Chain chain = chain_of({"near", "near", "flare", "flare"});
-    const Plan plan = Planner().plan(chain, facts_of(Image(8, 8, 3)));
+    const Plan plan = Planner().plan(chain, facts_of(Image(8, 8, 3)), linear_output());
     int of_depth = 0, of_pictures = 0;
     for (const postfx::Pass& pass : plan.passes) {
         of_depth += pass.kind == postfx::PassKind::census && pass.name == "census of depth";
@@ -240,7 +240,7 @@ TEST_CASE("what is asked twice is counted once") {
 TEST_CASE("nothing is counted for chains that skip nothing") {
     Chain chain = chain_of({"near", "flare"});
     chain.skip = Skip::nothing;
-    const Plan plan = Planner().plan(chain, facts_of(Image(8, 8, 3)));
+    const Plan plan = Planner().plan(chain, facts_of(Image(8, 8, 3)), linear_output());
     CHECK(plan.decisions.empty());
     for (const postfx::Pass& pass : plan.passes)
         CHECK(pass.kind == postfx::PassKind::draw);

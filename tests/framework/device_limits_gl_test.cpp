@@ -10,8 +10,8 @@ using postfx::DeviceLimits;
 
 namespace {
 
-Facts facts_of_size(int width, int height) {
-    Facts facts = facts_of(Image(1, 1, 3));
+SceneFacts facts_of_size(int width, int height) {
+    SceneFacts facts = facts_of(Image(1, 1, 3));
     facts.width = width;
     facts.height = height;
     return facts;
@@ -36,13 +36,13 @@ constexpr DeviceLimits usual = {.texture_side = 16384,
 } // namespace
 
 TEST_CASE("a limit is told with the pass that wants more") {
-    const Plan wide = Planner().plan(chain_of({"blur"}), facts_of_size(20000, 10));
+    const Plan wide = Planner().plan(chain_of({"blur"}), facts_of_size(20000, 10), linear_output());
     const std::string first = wide.passes.at(0).name;
     CHECK(error_of(wide, usual) == first + ": wants 20000 pixels, this device has at most 16384");
-    const Plan high = Planner().plan(chain_of({"blur"}), facts_of_size(10, 20000));
+    const Plan high = Planner().plan(chain_of({"blur"}), facts_of_size(10, 20000), linear_output());
     CHECK(error_of(high, usual) == first + ": wants 20000 pixels, this device has at most 16384");
 
-    const Plan plan = Planner().plan(chain_of({"blur", "tint"}), facts_of_size(640, 360));
+    const Plan plan = Planner().plan(chain_of({"blur", "tint"}), facts_of_size(640, 360), linear_output());
     CHECK(error_of(plan, usual) == "no error");
     DeviceLimits small = usual;
     small.viewport_height = 200;
@@ -67,11 +67,12 @@ TEST_CASE("a plan beyond this device is refused before anything is made, and the
     CHECK(limits.uniform_bytes >= 16384);
     if (limits.texture_side >= 32768) return; // plans have no more
     const Image color = test_picture();
-    const Plan plan = Planner().plan(chain_of({"blur"}), facts_of(color));
+    const Plan plan = Planner().plan(chain_of({"blur"}), facts_of(color), linear_output());
     const Inputs inputs(color);
     postfx::Executor executor;
     executor.prepare(plan);
-    const Plan wide = Planner().plan(chain_of({"blur"}), facts_of_size(limits.texture_side + 1, 2));
+    const Plan wide =
+        Planner().plan(chain_of({"blur"}), facts_of_size(limits.texture_side + 1, 2), linear_output());
     CHECK_THROWS_WITH(executor.prepare(wide),
                       Catch::Contains("wants " + std::to_string(limits.texture_side + 1)
                                       + " pixels, this device has at most "

@@ -59,7 +59,7 @@ TEST_CASE("a steady frame allocates nothing and makes no GL object") {
     const Quiet quiet;
     const Image color = test_picture();
     const Inputs inputs(color);
-    const Plan plan = Planner().plan(nine_effects(), facts_of(color));
+    const Plan plan = Planner().plan(nine_effects(), facts_of(color), linear_output());
     for (const Timing timing : {Timing::off, Timing::gpu, Timing::profile}) {
         Executor executor;
         executor.prepare(plan);
@@ -85,9 +85,9 @@ TEST_CASE("new values of the same plan make no GL object") {
     Chain chain = nine_effects();
     Planner planner;
     Executor executor;
-    executor.prepare(planner.plan(chain, facts_of(color)));
+    executor.prepare(planner.plan(chain, facts_of(color), linear_output()));
     chain.find("tint")->set("amount", 0.75);
-    const Plan changed = planner.plan(chain, facts_of(color));
+    const Plan changed = planner.plan(chain, facts_of(color), linear_output());
     {
         const postfx::testing::GlCreations creations;
         executor.prepare(changed);
@@ -101,8 +101,8 @@ TEST_CASE("back and forth between plans of one size, targets are taken over") {
     const Quiet quiet;
     const Image color = test_picture();
     const Inputs inputs(color);
-    const Plan long_plan = Planner().plan(nine_effects(), facts_of(color));
-    const Plan short_plan = Planner().plan(chain_of({"blur"}), facts_of(color));
+    const Plan long_plan = Planner().plan(nine_effects(), facts_of(color), linear_output());
+    const Plan short_plan = Planner().plan(chain_of({"blur"}), facts_of(color), linear_output());
     Executor executor;
     executor.prepare(long_plan);
     executor.run(inputs.of(long_plan));
@@ -121,7 +121,7 @@ TEST_CASE("outside GL a frame of nine effects costs at most 100 microseconds of 
     const Quiet quiet;
     const Image color = test_picture();
     const Inputs inputs(color);
-    const Plan plan = Planner().plan(nine_effects(), facts_of(color));
+    const Plan plan = Planner().plan(nine_effects(), facts_of(color), linear_output());
     Executor executor;
     executor.prepare(plan);
     const postfx::FrameInputs frame = inputs.of(plan);
@@ -165,7 +165,7 @@ TEST_CASE("profile mode gives the CPU time of every pass and says which clock it
     const Quiet quiet;
     const Image color = test_picture(200, 200);
     const Inputs inputs(color);
-    const Plan plan = Planner().plan(nine_effects(), facts_of(color));
+    const Plan plan = Planner().plan(nine_effects(), facts_of(color), linear_output());
     Executor executor;
     executor.prepare(plan);
     executor.run(inputs.of(plan));
@@ -190,7 +190,7 @@ TEST_CASE("gpu mode gives times where the clock is honest, and says so where it 
     const Quiet quiet;
     const Image color = test_picture();
     const Inputs inputs(color);
-    const Plan plan = Planner().plan(nine_effects(), facts_of(color));
+    const Plan plan = Planner().plan(nine_effects(), facts_of(color), linear_output());
     Executor executor;
     executor.prepare(plan);
     // The host's state must not reach the draw that checks the clock.

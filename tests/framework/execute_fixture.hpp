@@ -18,19 +18,19 @@ namespace execute_fixture {
 namespace gl = postfx::gl;
 using postfx::Chain;
 using postfx::Executor;
-using postfx::Facts;
 using postfx::Format;
 using postfx::Image;
 using postfx::Plan;
 using postfx::Planner;
+using postfx::PlanOptions;
+using postfx::SceneFacts;
 using postfx::testing::fixtures;
+using postfx::testing::linear_output;
 
-inline Facts facts_of(const Image& color, Format working = Format::rgba32f) {
-    Facts facts;
+inline SceneFacts facts_of(const Image& color) {
+    SceneFacts facts;
     facts.width = color.width;
     facts.height = color.height;
-    facts.working_format = working;
-    facts.output = postfx::Output::linear;
     facts.attachments = {"color", "depth"};
     return facts;
 }
@@ -74,9 +74,10 @@ private:
     gl::Texture color_, depth_;
 };
 
-inline Image draw(const Chain& chain, const Image& color, const Facts& facts) {
+inline Image draw(const Chain& chain, const Image& color, const SceneFacts& facts,
+                  const PlanOptions& options = linear_output()) {
     const Inputs inputs(color);
-    const Plan plan = Planner().plan(chain, facts);
+    const Plan plan = Planner().plan(chain, facts, options);
     Executor executor;
     executor.prepare(plan);
     executor.run(inputs.of(plan));

@@ -59,12 +59,13 @@ TEST_CASE("fused is unfused, within two half-float steps per rounding removed") 
     const Quiet quiet;
     const Chain chain = chain_of({"shift", "tint", "plain_c", "tint", "curve"});
     for (const Format format : {Format::rgba16f, Format::rgba32f}) {
-        Facts facts = facts_of(test_picture(), format);
-        const Plan one = Planner().plan(chain, facts);
-        const Image fused = draw(chain, test_picture(), facts);
-        facts.fuse = false;
-        const Plan five = Planner().plan(chain, facts);
-        const Image apart = draw(chain, test_picture(), facts);
+        const SceneFacts facts = facts_of(test_picture());
+        PlanOptions options = linear_output(format);
+        const Plan one = Planner().plan(chain, facts, options);
+        const Image fused = draw(chain, test_picture(), facts, options);
+        options.fuse = false;
+        const Plan five = Planner().plan(chain, facts, options);
+        const Image apart = draw(chain, test_picture(), facts, options);
         REQUIRE(one.passes.size() == 1);
         REQUIRE(five.passes.size() == 5);
         // Each effect here at most keeps a relative error, so each rounding between passes counts once; a compiler
@@ -109,10 +110,10 @@ TEST_CASE("two instances in one pass have their own values, as uniforms and comp
     chain.find("tint_2")->values[1] = {0.5, 0.5, 3, 0};
     chain.find("tint_2")->set("amount", 1);
     const Image color = postfx::testing::constant(3, 2, {1.0f, 2.0f, 3.0f});
-    Facts facts = facts_of(color);
+    PlanOptions options = linear_output();
     for (bool fold : {false, true}) {
-        facts.fold = fold;
-        const Image result = draw(chain, color, facts);
+        options.fold = fold;
+        const Image result = draw(chain, color, facts_of(color), options);
         CAPTURE(fold);
         CHECK(result.at(2, 1, 0) == 1);
         CHECK(result.at(2, 1, 1) == 4);
@@ -148,12 +149,12 @@ TEST_CASE("display codes of premultiplied light are those of the light without i
     color.values = {0.5f,  0.5f, 0.5f,  0.5f,  // white, half covered
                     0.25f, 0.0f, 0.0f,  0.0f,  // light without a surface stays as it is
                     0.2f,  0.1f, 0.05f, 1.0f}; // covered wholly
-    Facts facts = facts_of(color);
-    facts.output = postfx::Output::display;
+    SceneFacts facts = facts_of(color);
     facts.color_is_8bit = true; // no dither
-    const Image multiplied = draw(Chain{}, color, facts);
-    facts.divide_by_alpha = true;
-    const Image divided = draw(Chain{}, color, facts);
+    PlanOptions options;
+    const Image multiplied = draw(Chain{}, color, facts, options);
+    options.divide_by_alpha = true;
+    const Image divided = draw(Chain{}, color, facts, options);
     for (int channel = 0; channel < 3; ++channel) {
         CHECK(divided.at(0, 0, channel) == 1.0f);
         CHECK(divided.at(1, 0, channel) == multiplied.at(1, 0, channel));
@@ -215,13 +216,13 @@ TEST_CASE("a shader that does not compile is named by its own file and line, and
     const Image color = test_picture();
     const Inputs inputs(color);
     Planner planner;
-    const Plan good = planner.plan(nine_effects(), facts_of(color));
+    const Plan good = planner.plan(nine_effects(), facts_of(color), linear_output());
     Executor executor;
     executor.prepare(good);
     executor.run(inputs.of(good));
     const Image before = executor.read_picture();
 
-    const Plan bad = planner.plan(chain_of({"tint", "broken_shader"}), facts_of(color));
+    const Plan bad = planner.plan(chain_of({"tint", "broken_shader"}), facts_of(color), linear_output());
     for (int attempt = 0; attempt < 2; ++attempt) {
         try {
             executor.prepare(bad);
@@ -244,7 +245,7 @@ TEST_CASE("a plan whose targets can't be had leaves the plan before as it was") 
     const Quiet quiet;
     const Image color = test_picture();
     const Inputs inputs(color);
-    const Plan good = Planner().plan(nine_effects(), facts_of(color));
+    const Plan good = Planner().plan(nine_effects(), facts_of(color), linear_output());
     Executor executor;
     executor.prepare(good);
     executor.run(inputs.of(good));
@@ -263,7 +264,7 @@ TEST_CASE("wrong use is an Error") {
     CHECK_THROWS_WITH(executor.run({}), "run() before any prepare()");
     CHECK_THROWS_WITH(executor.read_picture(), "read_picture() before any run()");
     const Image color = test_picture();
-    executor.prepare(Planner().plan(chain_of({"tint"}), facts_of(color)));
+    executor.prepare(Planner().plan(chain_of({"tint"}), facts_of(color), linear_output()));
     CHECK_THROWS_WITH(executor.run({}), "the plan reads 1 attachments, 0 were given");
 }
 
@@ -289,7 +290,7 @@ TEST_CASE("programs on disk are loaded, not compiled, and bad files are ignored"
     const TemporaryDirectory scratch;
     const Image color = test_picture();
     const Inputs inputs(color);
-    const Plan plan = Planner().plan(chain_of({"blur", "tint"}), facts_of(color));
+    const Plan plan = Planner().plan(chain_of({"blur", "tint"}), facts_of(color), linear_output());
     const auto compiled_by_new_executor = [&](Image* picture) {
         POSTFX_GL_HOOK(glCompileShader) hook;
         Executor executor(scratch / "programs");
@@ -331,7 +332,7 @@ TEST_CASE("a cache that can't be written does no harm") {
     postfx::testing::put_bytes(scratch / "file", "in the way");
     Executor executor(scratch / "file" / "programs");
     const Image color = test_picture();
-    CHECK_NOTHROW(executor.prepare(Planner().plan(chain_of({"tint"}), facts_of(color))));
+    CHECK_NOTHROW(executor.prepare(Planner().plan(chain_of({"tint"}), facts_of(color), linear_output())));
 }
 
 // ---- compiled-in values
@@ -341,16 +342,16 @@ TEST_CASE("folded values give what uniforms give") {
     // Every kind of number, every kind of pass; this chain computes nothing that a compiler could round otherwise but
     // contractions, so that a float step for each of its operations is more than enough.
     const Chain chain = chain_of({"blur", "shift", "tint", "plain_c", "tint", "gauge"});
-    Facts facts = facts_of(test_picture());
+    PlanOptions folded = linear_output();
+    folded.fold = true;
+    SceneFacts facts = facts_of(test_picture());
     const Image live = draw(chain, test_picture(), facts);
-    facts.fold = true;
-    CHECK(worst_steps(draw(chain, test_picture(), facts), live, float_step) <= 16);
+    CHECK(worst_steps(draw(chain, test_picture(), facts, folded), live, float_step) <= 16);
 
     const Image black(15, 2, 3);
     facts = facts_of(black);
     const Image packed = draw(chain_of({"tint", "pack"}), black, facts);
-    facts.fold = true;
-    CHECK(postfx::testing::same_bits(draw(chain_of({"tint", "pack"}), black, facts), packed));
+    CHECK(postfx::testing::same_bits(draw(chain_of({"tint", "pack"}), black, facts, folded), packed));
 }
 
 // ---- watching for what is no number
@@ -363,7 +364,7 @@ TEST_CASE("the first pass that makes a NaN is named") {
     Chain chain = chain_of({"tint", "spoil"});
     chain.find("spoil")->set("threshold", 1);
     const Inputs inputs(color);
-    const Plan plan = Planner().plan(chain, facts_of(color));
+    const Plan plan = Planner().plan(chain, facts_of(color), linear_output());
     Executor executor;
     executor.prepare(plan);
 
@@ -391,7 +392,7 @@ TEST_CASE("a NaN of the input is nobody's fault") {
     Image color = postfx::testing::constant(5, 5, {2.0f, 2.0f, 2.0f});
     color.at(1, 2, 0) = std::numeric_limits<float>::infinity();
     const Inputs inputs(color);
-    const Plan plan = Planner().plan(chain_of({"tint"}), facts_of(color));
+    const Plan plan = Planner().plan(chain_of({"tint"}), facts_of(color), linear_output());
     Executor executor;
     executor.prepare(plan);
     executor.run(inputs.of(plan), postfx::Timing::profile, postfx::Watch::nonfinite);

@@ -16,11 +16,12 @@
 
 using postfx::Chain;
 using postfx::ChainEntry;
-using postfx::Facts;
 using postfx::Format;
 using postfx::ImageRef;
 using postfx::Plan;
 using postfx::Planner;
+using postfx::PlanOptions;
+using postfx::SceneFacts;
 using postfx::testing::fixtures;
 
 namespace {
@@ -139,18 +140,23 @@ Chain random_chain(Random& random, const std::vector<std::string>& effects, int 
     return chain;
 }
 
-Facts random_facts(Random& random) {
-    Facts facts;
+SceneFacts random_facts(Random& random) {
+    SceneFacts facts;
     facts.width = random.one_of<int>({1, 2, 3, 64, 641, 16384});
     facts.height = random.one_of<int>({1, 2, 5, 48, 361, 16384});
     if (random.below(2)) facts.attachments.insert(facts.attachments.begin(), "depth");
     if (random.below(2)) facts.attachments.emplace_back("normal");
-    facts.working_format = random.below(2) ? Format::rgba16f : Format::rgba32f;
-    facts.output = random.below(2) ? postfx::Output::linear : postfx::Output::display;
     facts.color_is_8bit = random.below(2) == 0;
-    facts.fuse = random.below(4) != 0;
     if (random.below(4) == 0) facts.camera = postfx::Camera::parallel(10, 0.1, 100);
     return facts;
+}
+
+PlanOptions random_options(Random& random) {
+    PlanOptions options;
+    options.working_format = random.below(2) ? Format::rgba16f : Format::rgba32f;
+    options.output = random.below(2) ? postfx::Output::linear : postfx::Output::display;
+    options.fuse = random.below(4) != 0;
+    return options;
 }
 
 } // namespace
@@ -163,8 +169,8 @@ TEST_CASE("in 1000 random chains every read gets what was written for it") {
     std::size_t shared = 0;
     for (int n = 0; n < 1000; ++n) {
         Chain chain = random_chain(random, effects, 12);
-        const Facts facts = random_facts(random);
-        const Plan plan = planner.plan(chain, facts);
+        const SceneFacts facts = random_facts(random);
+        const Plan plan = planner.plan(chain, facts, random_options(random));
         INFO("chain " << n);
         REQUIRE(simulate(plan) == expected(plan, chain));
         std::size_t outputs = 0;
@@ -231,11 +237,10 @@ TEST_CASE("a target takes only what has its format") {
     Chain chain;
     for (int i = 0; i < 3; ++i)
         chain.add(fixtures(), "split"); // parts are rgba32f and rgba16f
-    Facts facts;
+    SceneFacts facts;
     facts.width = 8;
     facts.height = 8;
-    facts.output = postfx::Output::linear;
-    const Plan plan = Planner().plan(chain, facts);
+    const Plan plan = Planner().plan(chain, facts, {.output = postfx::Output::linear});
     REQUIRE(plan.passes.size() == 6);
     for (const postfx::Pass& pass : plan.passes) {
         CHECK(plan.targets[pass.outputs[0].index].format == pass.format);
@@ -262,9 +267,9 @@ TEST_CASE("500 random chains of good and faulty effects end in a plan or an Erro
     for (int n = 0; n < 500; ++n) {
         // Mostly good, so that not every chain ends at its first effect.
         Chain chain = random_chain(random, random.below(3) ? good : all, 9);
-        const Facts facts = random_facts(random);
+        const SceneFacts facts = random_facts(random);
         try {
-            const Plan plan = planner.plan(chain, facts);
+            const Plan plan = planner.plan(chain, facts, random_options(random));
             simulate(plan);
             (void)report_text(describe(plan));
             ++plans;

@@ -18,22 +18,24 @@
 
 using postfx::Chain;
 using postfx::EffectStatus;
-using postfx::Facts;
 using postfx::Format;
 using postfx::ImageRef;
 using postfx::Plan;
 using postfx::Planner;
+using postfx::PlanOptions;
+using postfx::SceneFacts;
 using postfx::testing::fixtures;
 
 namespace {
 
-Facts facts_of(int width = 64, int height = 48) {
-    Facts facts;
+SceneFacts facts_of(int width = 64, int height = 48) {
+    SceneFacts facts;
     facts.width = width;
     facts.height = height;
-    facts.output = postfx::Output::linear;
     return facts;
 }
+
+const PlanOptions linear = {.output = postfx::Output::linear};
 
 Chain chain_of(const std::vector<std::string>& effects) {
     Chain chain;
@@ -42,8 +44,8 @@ Chain chain_of(const std::vector<std::string>& effects) {
     return chain;
 }
 
-Plan plan_of(const Chain& chain, const Facts& facts = facts_of()) {
-    return Planner().plan(chain, facts);
+Plan plan_of(const Chain& chain, const SceneFacts& facts = facts_of(), const PlanOptions& options = linear) {
+    return Planner().plan(chain, facts, options);
 }
 
 std::vector<std::string> names_of(const Plan& plan) {
@@ -55,7 +57,7 @@ std::vector<std::string> names_of(const Plan& plan) {
 
 using Names = std::vector<std::string>;
 
-std::string error_of(const Chain& chain, const Facts& facts = facts_of()) {
+std::string error_of(const Chain& chain, const SceneFacts& facts = facts_of()) {
     try {
         plan_of(chain, facts);
     } catch (const postfx::Error& error) {
@@ -115,16 +117,17 @@ std::size_t count(const std::string& text, const std::string& part) {
 
 TEST_CASE("the same chain and facts give the same plan") {
     Chain chain = chain_of({"shift", "tint", "blur", "split", "curve", "gauge"});
-    Facts facts = facts_of();
+    SceneFacts facts = facts_of();
     facts.attachments = {"normal", "depth", "color"};
-    facts.output = postfx::Output::display;
+    const PlanOptions display;
     Planner planner;
-    const std::string first = text_of(planner.plan(chain, facts));
+    const std::string first = text_of(planner.plan(chain, facts, display));
     chain.find("blur")->set("radius", 5);
-    const std::string other = text_of(planner.plan(chain, facts));
+    const std::string other = text_of(planner.plan(chain, facts, display));
     chain.find("blur")->set("radius", 2);
-    CHECK(text_of(planner.plan(chain, facts)) == first); // what the planner remembers changes nothing
-    CHECK(text_of(plan_of(chain, facts)) == first);
+    CHECK(text_of(planner.plan(chain, facts, display))
+          == first); // what the planner remembers changes nothing
+    CHECK(text_of(plan_of(chain, facts, display)) == first);
     CHECK(other != first);
 }
 
@@ -190,14 +193,14 @@ TEST_CASE("two instances share one function and differ in their block") {
 }
 
 TEST_CASE("a parameter that a source does not name is no part of its program") {
-    Facts facts = facts_of();
+    PlanOptions options = linear;
     for (const bool fold : {false, true}) {
-        facts.fold = fold;
+        options.fold = fold;
         Chain chain = chain_of({"blur"});
         chain.find("blur")->set("radius", 2.0);
-        const Plan before = plan_of(chain, facts);
+        const Plan before = plan_of(chain, facts_of(), options);
         chain.find("blur")->set("radius", 3.0);
-        const Plan after = plan_of(chain, facts);
+        const Plan after = plan_of(chain, facts_of(), options);
         REQUIRE(names_of(before) == Names{"blur/across", "blur/down", "blur"});
         CHECK(before.passes[0].program->key
               != after.passes[0].program->key); // its loop is as long as the radius
@@ -237,9 +240,8 @@ TEST_CASE("a compose that samples displaced points is the head of a fused pass")
 }
 
 TEST_CASE("fusion can be turned off") {
-    Facts facts = facts_of();
-    facts.fuse = false;
-    const Plan plan = plan_of(chain_of({"shift", "tint", "curve"}), facts);
+    const Plan plan = plan_of(chain_of({"shift", "tint", "curve"}), facts_of(),
+                              {.output = postfx::Output::linear, .fuse = false});
     CHECK(names_of(plan) == Names{"shift", "tint", "curve"});
     CHECK(plan.effects[0].reason == "a pass of its own; after it fusion is off");
 }
@@ -276,7 +278,7 @@ TEST_CASE("passes that nobody reads are dropped") {
 }
 
 TEST_CASE("attachments are in the plan only when a pass reads them") {
-    Facts facts = facts_of();
+    SceneFacts facts = facts_of();
     facts.attachments = {"normal", "depth", "emission", "color"};
     const Plan plan = plan_of(chain_of({"tint", "gauge"}), facts);
     CHECK(plan.attachments == Names{"color", "depth"});
@@ -285,28 +287,27 @@ TEST_CASE("attachments are in the plan only when a pass reads them") {
 }
 
 TEST_CASE("display output is encoded in the last pass, and dithered unless nothing was done") {
-    Facts facts = facts_of();
-    facts.output = postfx::Output::display;
+    SceneFacts facts = facts_of();
+    const PlanOptions display;
     const auto is_dithered = [](const Plan& plan) {
         return plan.passes.back().program->text.find("color = postfx_encode_dithered(") != std::string::npos;
     };
-    const Plan fused = plan_of(chain_of({"tint"}), facts);
+    const Plan fused = plan_of(chain_of({"tint"}), facts, display);
     CHECK(names_of(fused) == Names{"tint+output"});
     CHECK(fused.passes[0].format == Format::rgba8);
     CHECK(is_dithered(fused));
     CHECK(fused.effects[0].status == EffectStatus::ran); // fused with no other effect
 
-    const Plan alone = plan_of(Chain{}, facts);
+    const Plan alone = plan_of(Chain{}, facts, display);
     CHECK(names_of(alone) == Names{"output"});
     CHECK(is_dithered(alone));
 
     facts.color_is_8bit = true;
     Chain nothing = chain_of({"tint"});
     nothing.find("tint")->set("amount", 0);
-    CHECK_FALSE(is_dithered(plan_of(nothing, facts)));
-    CHECK(is_dithered(plan_of(chain_of({"tint"}), facts)));
+    CHECK_FALSE(is_dithered(plan_of(nothing, facts, display)));
+    CHECK(is_dithered(plan_of(chain_of({"tint"}), facts, display)));
 
-    facts.output = postfx::Output::linear;
     CHECK(plan_of(nothing, facts).passes.empty());
 }
 
@@ -314,7 +315,7 @@ TEST_CASE("an effect that stands where its light is not warns") {
     CHECK(plan_of(chain_of({"tint", "curve"})).warnings.empty());
     CHECK(plan_of(chain_of({"curve", "tint"})).warnings
           == Names{"tint works on scene-linear light, but stands after curve, which made it display light"});
-    Facts facts = facts_of();
+    SceneFacts facts = facts_of();
     facts.attachments.emplace_back("depth");
     CHECK(plan_of(chain_of({"gauge", "curve"}), facts).warnings
           == Names{"gauge belongs after curve, which makes the display light that it works on"});
@@ -504,7 +505,7 @@ TEST_CASE("a planner does not take an effect for another that stands where it st
         auto catalog = std::make_unique<postfx::Catalog>(common_catalog(text, text, false));
         Chain chain;
         chain.add(*catalog, "first");
-        const Plan plan = planner.plan(chain, facts_of());
+        const Plan plan = planner.plan(chain, facts_of(), linear);
         CHECK(plan.passes.at(0).program->text.find(text) != std::string::npos);
     }
 }
@@ -513,15 +514,15 @@ TEST_CASE("a planner does not take an effect for another that stands where it st
 
 TEST_CASE("a re-plan of nine effects is quick") {
     Chain chain = chain_of({"blur", "tint", "split", "pack", "shift", "tint", "curve", "many", "gauge"});
-    Facts facts = facts_of(1280, 720);
+    SceneFacts facts = facts_of(1280, 720);
     facts.attachments.emplace_back("depth");
     Planner planner;
-    planner.plan(chain, facts);
+    planner.plan(chain, facts, linear);
     std::vector<double> microseconds;
     for (int i = 0; i < 201; ++i) {
         chain.find("tint")->set("amount", 0.1 + 0.001 * i);
         const auto start = std::chrono::steady_clock::now();
-        const Plan plan = planner.plan(chain, facts);
+        const Plan plan = planner.plan(chain, facts, linear);
         const auto end = std::chrono::steady_clock::now();
         microseconds.push_back(std::chrono::duration<double, std::micro>(end - start).count());
     }
@@ -548,15 +549,14 @@ TEST_CASE("a value that a host set out of range is held to it, with a warning") 
 }
 
 TEST_CASE("folded, the same values share a program, others do not") {
-    Facts facts = facts_of();
-    facts.fold = true;
+    const SceneFacts facts = facts_of();
+    const PlanOptions folded = {.output = postfx::Output::linear, .fold = true};
     Planner planner;
     Chain chain = chain_of({"tint"});
-    const Plan first = planner.plan(chain, facts);
+    const Plan first = planner.plan(chain, facts, folded);
     CHECK(first.passes[0].uniform_block.empty());
-    CHECK(planner.plan(chain, facts).passes[0].program == first.passes[0].program);
+    CHECK(planner.plan(chain, facts, folded).passes[0].program == first.passes[0].program);
     chain.entries[0].set("amount", 0.125);
-    CHECK(planner.plan(chain, facts).passes[0].program->key != first.passes[0].program->key);
-    facts.fold = false;
-    CHECK(planner.plan(chain, facts).passes[0].program->key != first.passes[0].program->key);
+    CHECK(planner.plan(chain, facts, folded).passes[0].program->key != first.passes[0].program->key);
+    CHECK(planner.plan(chain, facts, linear).passes[0].program->key != first.passes[0].program->key);
 }

@@ -82,13 +82,11 @@ TEST_CASE("where a read could be missed, counting is refused and says where") {
 TEST_CASE("a plan counts only when it is asked to, in programs of their own") {
     Chain chain;
     chain.add(fixtures(), "blur");
-    Facts facts;
+    SceneFacts facts;
     facts.width = facts.height = 64;
     Planner planner;
     const Plan plain = planner.plan(chain, facts);
-    facts.count_taps = true;
-    const Plan counting = planner.plan(chain, facts);
-    facts.count_taps = false;
+    const Plan counting = planner.plan(chain, facts, {.count_taps = true});
     const Plan again = planner.plan(chain, facts);
     REQUIRE(plain.passes.size() == counting.passes.size());
     for (std::size_t i = 0; i < plain.passes.size(); ++i) {

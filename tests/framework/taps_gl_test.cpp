@@ -18,10 +18,10 @@ namespace {
 constexpr int width = 67, height = 41; // odd: quads of pixels stand over the edge
 constexpr std::uint64_t pixels = width * height;
 
-Report report_of(const Chain& chain, const Image& color, Facts facts) {
-    facts.count_taps = true;
+Report report_of(const Chain& chain, const Image& color, PlanOptions options = linear_output()) {
+    options.count_taps = true;
     const Inputs inputs(color);
-    const Plan plan = Planner().plan(chain, facts);
+    const Plan plan = Planner().plan(chain, facts_of(color), options);
     Executor executor;
     executor.prepare(plan);
     executor.run(inputs.of(plan));
@@ -41,7 +41,7 @@ Taps taps_of(const Report& report) {
 }
 
 Taps taps_of(const Chain& chain, const Image& color) {
-    return taps_of(report_of(chain, color, facts_of(color)));
+    return taps_of(report_of(chain, color));
 }
 
 void plan_probe(const postfx::Request&, postfx::Builder& out) {
@@ -94,16 +94,15 @@ Image striped(Bright is_bright) {
 TEST_CASE("a copy reads each pixel once") {
     const Quiet quiet;
     CHECK(taps_of(chain_of({"tint"}), test_picture(width, height)) == Taps{{"tint", pixels}});
-    Facts facts = facts_of(test_picture(width, height));
-    facts.output = postfx::Output::display;
-    CHECK(taps_of(report_of({}, test_picture(width, height), facts)) == Taps{{"output", pixels}});
+    CHECK(taps_of(report_of({}, test_picture(width, height), {.output = postfx::Output::display}))
+          == Taps{{"output", pixels}});
 }
 
 TEST_CASE("what is not asked for is not counted") {
     const Quiet quiet;
     const Image picture = test_picture(width, height);
     const Inputs inputs(picture);
-    const Plan plan = Planner().plan(chain_of({"tint"}), facts_of(picture));
+    const Plan plan = Planner().plan(chain_of({"tint"}), facts_of(picture), linear_output());
     Executor executor;
     executor.prepare(plan);
     executor.run(inputs.of(plan));
@@ -126,7 +125,7 @@ TEST_CASE("loops, fused passes and passes of other sizes") {
     chain.find("blur")->set("radius", 2);
     CHECK(taps_of(chain, picture)
           == Taps{{"blur/across", 5 * half}, {"blur/down", 5 * half}, {"blur+tint", 2 * pixels}});
-    Facts folded = facts_of(picture);
+    PlanOptions folded = linear_output();
     folded.fold = true;
     CHECK(taps_of(report_of(chain, picture, folded))
           == Taps{{"blur/across", 5 * half}, {"blur/down", 5 * half}, {"blur+tint", 2 * pixels}});
@@ -203,13 +202,14 @@ TEST_CASE("a counted picture is the picture bit for bit, watched or not") {
     const Quiet quiet;
     const Image picture = test_picture(width, height);
     for (const Chain& chain : {nine_effects(), chain_of({"flare", "spots", "curve"})}) {
-        Facts facts = facts_of(picture);
+        const SceneFacts facts = facts_of(picture);
         const Image plain = draw(chain, picture, facts);
-        facts.count_taps = true;
-        CHECK(same_bits(draw(chain, picture, facts), plain));
+        PlanOptions counting = linear_output();
+        counting.count_taps = true;
+        CHECK(same_bits(draw(chain, picture, facts, counting), plain));
 
         const Inputs inputs(picture);
-        const Plan plan = Planner().plan(chain, facts);
+        const Plan plan = Planner().plan(chain, facts, counting);
         Executor executor;
         executor.prepare(plan);
         executor.run(inputs.of(plan));

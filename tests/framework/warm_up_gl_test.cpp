@@ -69,7 +69,7 @@ std::string message_of(Executor& executor, const Plan& plan, const std::vector<F
 TEST_CASE("A small plan keeps what drivers compile for, and no condition") {
     for (const int width : {64, 67}) {
         const Image color = test_picture(width, 41);
-        const Plan plan = Planner().plan(all_kinds(), facts_of(color));
+        const Plan plan = Planner().plan(all_kinds(), facts_of(color), linear_output());
         const std::vector<Format> formats = formats_of(plan);
         for (std::size_t i = 0; i < plan.passes.size(); ++i) {
             INFO(plan.passes[i].name);
@@ -112,7 +112,7 @@ TEST_CASE("All programs of a plan are compiled on the second thread, and found b
     }
     const Image color = test_picture();
     const Inputs inputs(color);
-    const Plan plan = Planner().plan(all_kinds(), facts_of(color));
+    const Plan plan = Planner().plan(all_kinds(), facts_of(color), linear_output());
     const int all = static_cast<int>(programs_of(plan).size());
     {
         WarmUp warm_up(plan, formats_of(plan), directory.path());
@@ -132,7 +132,7 @@ TEST_CASE("All programs of a plan are compiled on the second thread, and found b
 TEST_CASE("A pass that is left to the caller is not compiled on the second thread any more") {
     const TemporaryDirectory directory;
     const Image color = test_picture();
-    const Plan plan = Planner().plan(all_kinds(), facts_of(color));
+    const Plan plan = Planner().plan(all_kinds(), facts_of(color), linear_output());
     WarmUp warm_up(plan, formats_of(plan), directory.path());
     for (std::size_t i = 0; i < plan.passes.size(); ++i)
         warm_up.leave(i); // returns: whatever the thread is at comes to an end
@@ -147,7 +147,7 @@ TEST_CASE("With a second thread the picture is the same bit for bit, and program
     const Inputs inputs(color);
     for (const Chain& chain : {all_kinds(), nine_effects()}) {
         const TemporaryDirectory directory;
-        const Plan plan = Planner().plan(chain, facts_of(color));
+        const Plan plan = Planner().plan(chain, facts_of(color), linear_output());
         const Image expected = draw(chain, color, facts_of(color));
         for (int run = 0; run < 2; ++run) {
             Executor executor(directory.path());
@@ -168,8 +168,8 @@ TEST_CASE("With a second thread the picture is the same bit for bit, and program
 TEST_CASE("What does not compile is told once, in the words that it always has") {
     const Image color = test_picture();
     const Inputs inputs(color);
-    const Plan bad = Planner().plan(chain_of({"tint", "broken_shader"}), facts_of(color));
-    const Plan good = Planner().plan(all_kinds(), facts_of(color));
+    const Plan bad = Planner().plan(chain_of({"tint", "broken_shader"}), facts_of(color), linear_output());
+    const Plan good = Planner().plan(all_kinds(), facts_of(color), linear_output());
     Executor plain;
     const std::string expected = message_of(plain, bad, {});
     CHECK_THAT(expected, Catch::Contains("broken_shader.glsl:4"));
@@ -188,7 +188,7 @@ TEST_CASE("A second thread that can do nothing leaves everything to the first") 
     const Quiet quiet;
     const TemporaryDirectory directory;
     const Image color = test_picture();
-    const Plan bad = Planner().plan(chain_of({"tint", "broken_shader"}), facts_of(color));
+    const Plan bad = Planner().plan(chain_of({"tint", "broken_shader"}), facts_of(color), linear_output());
     WarmUp warm_up(bad, formats_of(bad), directory.path());
     for (std::size_t i = 0; i < bad.passes.size(); ++i)
         warm_up.leave(i);

@@ -81,11 +81,11 @@ Image with_alpha(const Image& image) {
     return result;
 }
 
-Image run(const Chain& chain, const Input& input, const Facts& facts) {
+Image run(const Chain& chain, const Input& input, const PlanOptions& options) {
     require_gl();
     static Planner planner;
     Runner runner;
-    runner.prepare(planner.plan(chain, facts));
+    runner.prepare(planner.plan(chain, facts_of(input), options));
     return runner.draw(input);
 }
 
@@ -113,16 +113,18 @@ void set_level(ChainEntry& entry, std::string_view level) {
     entry.level = static_cast<int>(found - names.begin());
 }
 
-Facts facts_of(const Input& input, Format working_format) {
-    Facts facts;
+SceneFacts facts_of(const Input& input) {
+    SceneFacts facts;
     facts.width = input.color.width;
     facts.height = input.color.height;
     facts.camera = input.camera;
     for (const auto& [name, image] : input.attachments)
         facts.attachments.push_back(name);
-    facts.working_format = working_format;
-    facts.output = Output::linear;
     return facts;
+}
+
+PlanOptions linear_output(Format working_format) {
+    return {.output = Output::linear, .working_format = working_format};
 }
 
 void Runner::prepare(Plan plan) {
@@ -158,17 +160,17 @@ bool has_gl(std::string* why) {
 }
 
 Image run_effect(const std::string& effect, const Input& input, const Values& values, Format working_format) {
-    return run(single(effect, values), input, facts_of(input, working_format));
+    return run(single(effect, values), input, linear_output(working_format));
 }
 
 Image run_chain(const std::string& yaml, const Input& input, Format working_format, bool fuse) {
-    Facts facts = facts_of(input, working_format);
-    facts.fuse = fuse;
-    return run(parse_chain(yaml, "test.yaml", catalog()), input, facts);
+    PlanOptions options = linear_output(working_format);
+    options.fuse = fuse;
+    return run(parse_chain(yaml, "test.yaml", catalog()), input, options);
 }
 
 Plan plan_effect(const std::string& effect, const Input& input, const Values& values) {
-    return Planner().plan(single(effect, values), facts_of(input, Format::rgba32f));
+    return Planner().plan(single(effect, values), facts_of(input), linear_output());
 }
 
 double ReferenceInput::value(const std::string& id) const {

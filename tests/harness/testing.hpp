@@ -73,8 +73,10 @@ Image run_chain(const std::string& yaml, const Input& input, Format working_form
 /// The effects of this build.
 const Catalog& catalog();
 
-/// What a host would tell the planner about that input; the output is linear.
-Facts facts_of(const Input& input, Format working_format = Format::rgba32f);
+/// What a host would tell the planner about that input.
+SceneFacts facts_of(const Input& input);
+/// Plans whose pictures are compared as light.
+PlanOptions linear_output(Format working_format = Format::rgba32f);
 
 /// Draws many plans with one executor, so that programs and targets are kept; a context must be there (has_gl).
 class Runner {

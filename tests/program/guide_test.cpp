@@ -121,7 +121,7 @@ TEST_CASE("guide: the plan is the one that the page prints") {
                                     [](const CodeBlock& block) { return !block.value("explain").empty(); });
     REQUIRE(shown != page().end());
     const Catalog catalog = (guide(), Catalog::discover());
-    Facts facts;
+    SceneFacts facts;
     facts.width = 1280;
     facts.height = 720;
     facts.attachments = {"color", "depth"};

@@ -24,13 +24,12 @@ Image picture_of(const std::string& scene_name, const std::string& chain_name, i
     const host::Scene scene = host::read_scene(source + "/configs/scenes/" + scene_name + ".yaml");
     const Catalog catalog = Catalog::discover();
     const Chain chain = read_chain(source + "/configs/chains/" + chain_name + ".yaml", catalog);
-    Facts facts;
+    SceneFacts facts;
     facts.width = width;
     facts.height = height;
     facts.camera = scene.camera_at(0);
     facts.attachments = host::SceneRenderer::attachment_names();
-    facts.output = Output::linear;
-    const Plan plan = Planner().plan(chain, facts);
+    const Plan plan = Planner().plan(chain, facts, {.output = Output::linear});
 
     host::SceneRenderer renderer(scene);
     const host::SceneFrame frame = renderer.render(width, height, 0, plan.attachments);

@@ -49,7 +49,7 @@ TEST_CASE("animations: steps, straight lines and curves, held, looped") {
           == std::vector<std::string>{"1 animation is left out, for another moves the same nodes (again)"});
     Scene scene;
     add_model(scene, model);
-    CHECK(scene.facts().moves);
+    CHECK(scene.contents().moves);
     const auto x = [&](double time, std::size_t node) {
         std::vector<glm::dmat4> placed;
         scene.place_nodes(time, placed);

@@ -338,7 +338,7 @@ TEST_CASE("shipped scenes and unusual sizes draw finite pictures") {
         for (const float value : read(scene.render(160, 90, 0, {}), "color", 160, 90).values) {
             brightest = std::max(brightest, value);
         }
-        CHECK(brightest > (scene.scene().facts().emitters ? 2.0f : 0.2f));
+        CHECK(brightest > (scene.scene().contents().emitters ? 2.0f : 0.2f));
     }
     check_quiet();
 }

@@ -251,16 +251,16 @@ TEST_CASE("whether a file is a scene or a model, and of which format, its conten
             const std::filesystem::path file = folder / ("model" + ending);
             INFO(format << " as " << file.filename());
             put(file, content);
-            CHECK(open_scene(file.string(), scenes).facts().triangles == 1);
+            CHECK(open_scene(file.string(), scenes).contents().triangles == 1);
         }
     }
     for (const char* name : {"scene.yaml", "scene.txt", "scene", "scene.obj2"}) {
         INFO(name);
         put(folder / name, yaml);
-        CHECK(open_scene((folder / name).string(), scenes).facts().triangles == 12);
+        CHECK(open_scene((folder / name).string(), scenes).contents().triangles == 12);
     }
     put(folder / "scene.json", R"({"nodes": [{"mesh": {"box": {}}}]})");
-    CHECK(open_scene((folder / "scene.json").string(), scenes).facts().triangles == 12);
+    CHECK(open_scene((folder / "scene.json").string(), scenes).contents().triangles == 12);
 
     put(folder / "a.yaml", "\x89PNG\r\n\x1a\n");
     CHECK_THAT(error_of_scene(folder / "a.yaml"), Catch::Contains("is a PNG image, expected a scene"));
@@ -282,7 +282,7 @@ TEST_CASE("scenes and models come through pipes") {
         const std::jthread writer([&] { put(pipe, content); });
         const Scene scene = open_scene(pipe.string(), scenes);
         CHECK(scene.content == content);
-        return scene.facts().triangles;
+        return scene.contents().triangles;
     };
     CHECK(through_pipe("nodes:\n  - {mesh: {box: {}}}\n  - {mesh: {model: triangle.obj}}\n") == 13);
     for (const std::string& model :
@@ -429,13 +429,13 @@ TEST_CASE("hierarchy and movement are functions of time alone") {
     CHECK(camera.view_to_world[12] == Approx(1));
     CHECK(camera.view_to_world[13] == Approx(1));
     CHECK(camera.vertical_fov == 60);
-    CHECK(scene.facts().moves);
+    CHECK(scene.contents().moves);
 }
 
 TEST_CASE("an including file replaces what has the same name") {
     const Scene plain = open_scene("cornell", scenes), glow = open_scene("cornell_glow", scenes);
-    CHECK(plain.facts().triangles == 32); // 5 walls, the lamp and 5 sides each of two boxes, as quads
-    CHECK(glow.facts().triangles == 32);
+    CHECK(plain.contents().triangles == 32); // 5 walls, the lamp and 5 sides each of two boxes, as quads
+    CHECK(glow.contents().triangles == 32);
     CHECK(plain.lights.size() == 4);
     CHECK(glow.lights.size() == 7);
     CHECK(plain.camera.focus_distance == glow.camera.focus_distance);
@@ -458,7 +458,7 @@ TEST_CASE("every shipped scene opens and says what it is") {
         CHECK_FALSE(scene.description.empty());
         CHECK(scene.description == entry.description);
         // By one of them at least something is seen.
-        CHECK((scene.facts().emitters || scene.facts().lights > 0 || scene.facts().sky));
+        CHECK((scene.contents().emitters || scene.contents().lights > 0 || scene.contents().sky));
     }
 }
 
@@ -467,7 +467,7 @@ TEST_CASE("a Cornell box in OBJ opens with a camera that sees all of it") {
     if (file.empty()) return;
     const Scene scene = open_scene(file.string(), scenes);
     // 3 + 1 + 1 + 1 + 1 + 1 quads of the room, its front face being commented out, and 10 of the boxes.
-    CHECK(scene.facts().triangles == 36);
+    CHECK(scene.contents().triangles == 36);
     const Bounds bounds = scene.bounds();
     CHECK(bounds.high.x == Approx(556));
     CHECK(bounds.high.y == Approx(548.8));

@@ -1,4 +1,4 @@
-// What will be drawn, as pure data. Chain + Facts -> Plan; no OpenGL.
+// What will be drawn, as pure data. Chain + SceneFacts + PlanOptions -> Plan; no OpenGL.
 #pragma once
 
 #include <postfx/camera.hpp>
@@ -31,16 +31,20 @@ struct SceneBounds {
     static constexpr double infinity = std::numeric_limits<double>::infinity();
 };
 
-/// What the host knows before any pixel is drawn.
-struct Facts {
+/// What is, as the host knows it before any pixel is drawn.
+struct SceneFacts {
     int width = 0, height = 0; ///< pixels
     Camera camera;
     std::vector<std::string> attachments = {"color"}; ///< what can be provided, in any order
-    SceneBounds scene;
-    Format working_format = Format::rgba16f;
+    SceneBounds bounds;
+    /// The picture came as 8-bit codes: with nothing to do, they are not dithered.
+    bool color_is_8bit = false;
+};
+
+/// What is wished of a plan: what is to come out, and how it is to be drawn.
+struct PlanOptions {
     Output output = Output::display;
-    bool color_is_8bit =
-        false; ///< the picture came as 8-bit codes: with nothing to do, they are not dithered
+    Format working_format = Format::rgba16f;
     /// Display output: the colour is multiplied by alpha, its codes are not to be. Where alpha is 0 it stays as it is.
     bool divide_by_alpha = false;
     bool fuse = true; ///< false: every effect writes its own target
@@ -157,7 +161,7 @@ struct Plan {
 };
 
 /// Makes plans. Keeps assembled shader texts between calls, so that a re-plan costs microseconds; apart from
-/// that the same chain and facts give the same plan.
+/// that the same chain, facts and options give the same plan.
 class Planner {
 public:
     Planner();
@@ -166,7 +170,7 @@ public:
     Planner& operator=(Planner&&) noexcept;
 
     /// Naming the effect, throws Refusal when it refuses its values, and Error when its plan is wrong.
-    Plan plan(const Chain& chain, const Facts& facts);
+    Plan plan(const Chain& chain, const SceneFacts& facts, const PlanOptions& options = {});
 
 private:
     struct Memory;

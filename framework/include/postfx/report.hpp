@@ -24,7 +24,7 @@ struct PassReport {
     int tiles = 0;                  ///< that it may be drawn in; 0: it is not drawn in tiles
     std::optional<int> tiles_drawn; ///< of them; absent: not known
     /// Calls that read a texture (textureGather() is one), of all pixels or threads in the last frame, and what
-    /// listing its tiles read; absent: its program does not count (Facts::count_taps).
+    /// listing its tiles read; absent: its program does not count (PlanOptions::count_taps).
     std::optional<std::uint64_t> taps;
 };
 

@@ -51,8 +51,8 @@ struct Finish {
     bool divide_by_alpha = false; ///< before it is encoded
 };
 
-/// How a pass's program gets its numbers, from uniform blocks or compiled in (Facts::fold), and gives some: does it
-/// count its texture reads (Facts::count_taps)?
+/// How a pass's program gets its numbers, from uniform blocks or compiled in (PlanOptions::fold), and gives some: does
+/// it count its texture reads (PlanOptions::count_taps)?
 struct Numbers {
     int width = 0, height = 0; ///< of the pass's target
     bool folded = false, count_taps = false;

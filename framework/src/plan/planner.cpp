@@ -73,8 +73,9 @@ public:
     };
     using Programs = std::unordered_map<std::string, KnownProgram>;
 
-    Walk(const Facts& facts, Skip skip, Programs& programs, std::vector<std::string> warnings)
-        : facts_(facts), skip_(skip), programs_(programs),
+    Walk(const SceneFacts& facts, const PlanOptions& options, Skip skip, Programs& programs,
+         std::vector<std::string> warnings)
+        : facts_(facts), options_(options), skip_(skip), programs_(programs),
           frame_(frame_block(facts.width, facts.height, facts.camera)) {
         plan_.warnings = std::move(warnings);
         plan_.width = facts.width;
@@ -86,7 +87,7 @@ public:
     void add(const ChainEntry& entry, const Codes& codes) {
         plan_.effects.push_back({entry.name, entry.effect->id, EffectStatus::ran, "", "", ""});
         if (!entry.enabled) return skip({"configuration", "exact", "enabled is false"});
-        const Recording recording = record(entry, facts_, skip_, codes);
+        const Recording recording = record(entry, facts_, options_.working_format, skip_, codes);
         if (recording.identity) return skip(*recording.identity);
         warn_about_order(entry);
         if (recording.decision) add_decision(entry, recording);
@@ -120,7 +121,7 @@ private:
     }
 
     Numbers numbers_of(int width, int height) const {
-        return {width, height, facts_.fold, facts_.count_taps, frame_};
+        return {width, height, options_.fold, options_.count_taps, frame_};
     }
 
     ImageRef new_target(int width, int height, Format format) {
@@ -276,7 +277,7 @@ private:
 
     /// Let a compose function join those that wait, or draw them first and say why.
     void wait(WaitingStage stage) {
-        std::string apart = facts_.fuse || waiting_.empty() ? "" : "fusion is off";
+        std::string apart = options_.fuse || waiting_.empty() ? "" : "fusion is off";
         std::size_t inputs = 1 + stage.inputs.size();
         std::size_t bytes = block_head_bytes + stage.bytes;
         for (const WaitingStage& other : waiting_) {
@@ -309,7 +310,7 @@ private:
         for (const WaitingStage& waiting : waiting_) {
             if (waiting.decision >= 0) decisions.push_back(waiting.decision);
         }
-        const Format format = finish.encoding == Encoding::none ? facts_.working_format : Format::rgba8;
+        const Format format = finish.encoding == Encoding::none ? options_.working_format : Format::rgba8;
         const ImageRef target = new_target(facts_.width, facts_.height, format);
         std::vector<Alternative> after = {{target, {}}};
         for (std::uint32_t outcome = 0; outcome < 1u << decisions.size(); ++outcome) {
@@ -400,13 +401,13 @@ private:
     }
 
     Finish final_finish() const {
-        if (facts_.output == Output::linear) return {};
+        if (options_.output == Output::linear) return {};
         const bool nothing_ran =
             std::all_of(plan_.effects.begin(), plan_.effects.end(),
                         [](const PlannedEffect& e) { return e.status == EffectStatus::skipped; });
         // Dithering codes that were 8 bits to begin with would only change them.
         const bool keeps_codes = facts_.color_is_8bit && nothing_ran;
-        return {keeps_codes ? Encoding::srgb : Encoding::srgb_dithered, facts_.divide_by_alpha};
+        return {keeps_codes ? Encoding::srgb : Encoding::srgb_dithered, options_.divide_by_alpha};
     }
 
     void warn_about_order(const ChainEntry& entry) {
@@ -430,7 +431,8 @@ private:
         }
     }
 
-    const Facts& facts_;
+    const SceneFacts& facts_;
+    const PlanOptions& options_;
     Skip skip_;
     Programs& programs_;
     FrameBlock frame_;
@@ -477,7 +479,7 @@ Planner::~Planner() = default;
 Planner::Planner(Planner&&) noexcept = default;
 Planner& Planner::operator=(Planner&&) noexcept = default;
 
-Plan Planner::plan(const Chain& chain, const Facts& facts) {
+Plan Planner::plan(const Chain& chain, const SceneFacts& facts, const PlanOptions& options) {
     if (facts.width < 1 || facts.height < 1) {
         throw Error(fmt::format("a picture of {}x{} pixels can't be planned", facts.width, facts.height));
     }
@@ -488,7 +490,7 @@ Plan Planner::plan(const Chain& chain, const Facts& facts) {
     std::vector<Codes> codes(entries.size() + 1, display_codes()); // before each effect, and behind the last
     for (std::size_t i = entries.size(); i-- > 0;)
         codes[i] = entries[i].enabled ? codes_before(entries[i], facts, codes[i + 1]) : codes[i + 1];
-    Walk walk(facts, chain.skip, memory_->programs, std::move(warnings));
+    Walk walk(facts, options, chain.skip, memory_->programs, std::move(warnings));
     for (std::size_t i = 0; i < entries.size(); ++i)
         walk.add(entries[i], codes[i + 1]);
     return walk.finish();

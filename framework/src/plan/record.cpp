@@ -39,8 +39,8 @@ struct Wrong {
 /// problem is kept and everything after it ignored.
 class Recorder {
 public:
-    Recorder(const ChainEntry& entry, const Facts& facts, Skip skip)
-        : entry_(entry), facts_(facts), skip_(skip) {
+    Recorder(const ChainEntry& entry, const SceneFacts& facts, Format working_format, Skip skip)
+        : entry_(entry), facts_(facts), working_format_(working_format), skip_(skip) {
         abi_.struct_size = sizeof(postfx_builder);
         abi_.context = this;
         abi_.identity = on_identity;
@@ -314,7 +314,7 @@ private:
     }
 
     Format format(std::string_view word, const std::string& pass) const {
-        if (word.empty()) return facts_.working_format;
+        if (word.empty()) return working_format_;
         const auto found = format_by_name(word);
         if (!found || *found == Format::depth32f) {
             throw Wrong{fmt::format("pass {} has the unknown format \"{}\"", pass, word)};
@@ -323,7 +323,8 @@ private:
     }
 
     const ChainEntry& entry_;
-    const Facts& facts_;
+    const SceneFacts& facts_;
+    Format working_format_;
     Skip skip_;
     postfx_builder abi_{};
     Recording recording_;
@@ -356,16 +357,16 @@ postfx_camera abi_camera(const Camera& camera) {
 /// A postfx_request with everything that it points to.
 class AbiRequest {
 public:
-    AbiRequest(const ChainEntry& entry, const Facts& facts, const Codes& codes)
+    AbiRequest(const ChainEntry& entry, const SceneFacts& facts, const Codes& codes)
         : camera_(abi_camera(facts.camera)), attachments_(c_strings(facts.attachments)),
-          empty_(c_strings(facts.scene.empty)) {
+          empty_(c_strings(facts.bounds.empty)) {
         scene_.struct_size = sizeof(scene_);
-        scene_.nearest = facts.scene.nearest;
-        scene_.farthest = facts.scene.farthest;
-        scene_.reach = facts.scene.reach;
+        scene_.nearest = facts.bounds.nearest;
+        scene_.farthest = facts.bounds.farthest;
+        scene_.reach = facts.bounds.reach;
         const double eye_height = facts.camera.view_to_world[13];
-        scene_.lowest = std::min(facts.scene.lowest, eye_height);
-        scene_.highest = std::max(facts.scene.highest, eye_height);
+        scene_.lowest = std::min(facts.bounds.lowest, eye_height);
+        scene_.highest = std::max(facts.bounds.highest, eye_height);
         scene_.empty = empty_.data();
         scene_.empty_count = static_cast<std::uint32_t>(empty_.size());
         request_.struct_size = sizeof(request_);
@@ -406,7 +407,7 @@ Codes display_codes() {
     return {255 * 12.92, 255 * 1.055 / 2.4};
 }
 
-Codes codes_before(const ChainEntry& entry, const Facts& facts, const Codes& behind) {
+Codes codes_before(const ChainEntry& entry, const SceneFacts& facts, const Codes& behind) {
     postfx_gain gain{};
     gain.struct_size = sizeof(gain);
     constexpr double unknown = std::numeric_limits<double>::infinity();
@@ -417,9 +418,10 @@ Codes codes_before(const ChainEntry& entry, const Facts& facts, const Codes& beh
             product(behind.per_share, gain.share_to_share) + product(behind.per_light, gain.share_to_light)};
 }
 
-Recording record(const ChainEntry& entry, const Facts& facts, Skip skip, const Codes& codes) {
+Recording record(const ChainEntry& entry, const SceneFacts& facts, Format working_format, Skip skip,
+                 const Codes& codes) {
     const AbiRequest request(entry, facts, codes);
-    Recorder recorder(entry, facts, skip);
+    Recorder recorder(entry, facts, working_format, skip);
     const std::int32_t status = entry.effect->abi->plan(&request.get(), &recorder.abi());
     Recording recording = recorder.finish();
     if (status != 0)

@@ -76,11 +76,12 @@ struct Codes {
 /// Of the picture as it is displayed: sRGB encoded.
 Codes display_codes();
 /// In front of an effect, if `behind` holds behind it. Infinite if the effect does not say what it does.
-Codes codes_before(const ChainEntry& entry, const Facts& facts, const Codes& behind);
+Codes codes_before(const ChainEntry& entry, const SceneFacts& facts, const Codes& behind);
 
 /// Call the effect's plan(). Naming the chain entry, throws Refusal when it refuses its values, and Error when it
 /// declares something wrong.
-/// `skip`: what it may leave out; `codes`: behind it.
-Recording record(const ChainEntry& entry, const Facts& facts, Skip skip, const Codes& codes);
+/// `working_format`: of outputs that name none; `skip`: what it may leave out; `codes`: behind it.
+Recording record(const ChainEntry& entry, const SceneFacts& facts, Format working_format, Skip skip,
+                 const Codes& codes);
 
 } // namespace postfx

@@ -40,8 +40,7 @@ int uniform_level(const BudgetEntry& entry, const EffectInfo& effect, const std:
 class Prover {
 public:
     Prover(StudyScene& scene, const Chain& chain, const Curves& curves, const BudgetProofOptions& options)
-        : options_(options), chain_(chain),
-          facts_(facts_of(scene.scene, scene.bounds, options.size, 0, Output::display)),
+        : options_(options), chain_(chain), facts_(facts_of(scene.scene, scene.bounds, options.size, 0)),
           question_(budget_question(chain, curves, Planner().plan(chain, facts_))),
           renderer_(scene.scene, {.samples = 4}),
           scene_frame_(renderer_.render(facts_.width, facts_.height, 0, SceneRenderer::attachment_names())) {
@@ -154,7 +153,7 @@ private:
         inputs.draw_scene = [this](const std::vector<std::string>&) { return textures_of(scene_frame_); };
         inputs.frame.camera = facts_.camera;
         const Budget most = {Budget::Of::ms, proof_.budgets.back().ms};
-        question_ = in_scene(question_, try_levels(chain_, question_, most, facts_, inputs));
+        question_ = in_scene(question_, try_levels(chain_, question_, most, facts_, PlanOptions(), inputs));
         for (ProvedSetting& setting : proof_.settings)
             predict(setting);
     }
@@ -221,9 +220,7 @@ private:
         Chain chain = chain_;
         for (std::size_t i = 0; i < chain.entries.size(); ++i)
             chain.entries[i].level = setting.levels[i];
-        Facts facts = facts_;
-        facts.output = output;
-        return std::make_shared<ChainRunner>(std::move(chain), facts);
+        return std::make_shared<ChainRunner>(std::move(chain), facts_, PlanOptions{.output = output});
     }
 
     void draw(ChainRunner& runner) const {
@@ -241,7 +238,7 @@ private:
 
     BudgetProofOptions options_;
     Chain chain_;
-    Facts facts_;
+    SceneFacts facts_;
     BudgetQuestion question_;
     SceneRenderer renderer_;
     SceneFrame scene_frame_;

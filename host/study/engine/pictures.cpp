@@ -56,12 +56,10 @@ public:
     const ChainEntry& entry() const override { return entry_; }
 
     Image64 draw(const ChainEntry& entry, const MethodInput& input) const override {
-        Facts facts;
+        SceneFacts facts;
         facts.width = input.color.width;
         facts.height = input.color.height;
         facts.camera = input.camera;
-        facts.working_format = Format::rgba32f;
-        facts.output = Output::linear;
         std::vector<gl::Texture> owned;
         Textures textures;
         const auto upload = [&](const std::string& name, const Image& image) {
@@ -81,7 +79,8 @@ public:
         frame.camera = input.camera;
         frame.time = input.time;
         frame.frame = input.frame;
-        ChainRunner runner(chain_of(entry), facts);
+        ChainRunner runner(chain_of(entry), facts,
+                           {.output = Output::linear, .working_format = Format::rgba32f});
         runner.run(textures, frame, Timing::off);
         return light_of(runner.executor().read_picture());
     }
@@ -97,7 +96,7 @@ private:
 } // namespace
 
 LevelPicture picture_of(const ChainEntry& entry, const View& view) {
-    ChainRunner runner(chain_of(entry), view.facts());
+    ChainRunner runner(chain_of(entry), view.facts(), {.output = Output::linear});
     runner.run(view.textures(), view.frame(), Timing::off);
     LevelPicture picture{.light = light_of(runner.executor().read_picture()), .skipped = ""};
     const PlannedEffect effect = runner.executor().report().effects.front();

@@ -10,12 +10,6 @@
 namespace postfx::host::study {
 namespace {
 
-Facts displayed(const View& view) {
-    Facts facts = view.facts();
-    facts.output = Output::display;
-    return facts;
-}
-
 Chain chain_of(const std::vector<ChainEntry>& entries) {
     Chain chain;
     chain.entries = entries;
@@ -27,10 +21,10 @@ class Stopwatch {
 public:
     Stopwatch(const View& view, const std::vector<ChainEntry>& entries, const TimeOptions& options)
         : view_(view), options_(options),
-          copy_(PlainPass::copy(view.size().width, view.size().height, view.facts().working_format)) {
-        runners_.push_back(std::make_unique<ChainRunner>(chain_of({}), displayed(view)));
+          copy_(PlainPass::copy(view.size().width, view.size().height, PlanOptions().working_format)) {
+        runners_.push_back(std::make_unique<ChainRunner>(chain_of({}), view.facts()));
         for (const ChainEntry& entry : entries)
-            runners_.push_back(std::make_unique<ChainRunner>(chain_of({entry}), displayed(view)));
+            runners_.push_back(std::make_unique<ChainRunner>(chain_of({entry}), view.facts()));
         costs_.resize(entries.size());
         for (std::size_t i = 0; i < runners_.size(); ++i)
             seconds_.push_back(seconds_of(i));
@@ -148,9 +142,7 @@ double read_by(const Plan& plan, const View& view) {
 
 /// Of a whole chain, all pixels of all its passes.
 double all_taps(const View& view, const Chain& chain) {
-    Facts facts = displayed(view);
-    facts.count_taps = true;
-    ChainRunner runner(chain, facts);
+    ChainRunner runner(chain, view.facts(), {.count_taps = true});
     runner.run(view.textures(), view.frame(), Timing::off);
     double taps = 0;
     for (const PassReport& pass : runner.executor().report().passes)
@@ -167,7 +159,7 @@ TimedEntries measure_entries(const View& view, const std::vector<ChainEntry>& en
 
 Work work_of(const View& view, const ChainEntry& entry) {
     Planner planner;
-    const Facts facts = displayed(view);
+    const SceneFacts& facts = view.facts();
     const Plan with = planner.plan(chain_of({entry}), facts), without = planner.plan(chain_of({}), facts);
     const double pixels = static_cast<double>(facts.width) * facts.height;
     return {static_cast<int>(with.passes.size()) - static_cast<int>(without.passes.size()),

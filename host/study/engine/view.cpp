@@ -26,8 +26,8 @@ Image64 tone_mapped(Image64 light) {
 View::View(StudyScene& scene, const EffectInfo& effect, Size size, int samples)
     : renderer_(scene.scene, {.samples = samples}),
       scene_frame_(renderer_.render(size.width, size.height, 0, wanted_by(effect))),
-      facts_(facts_of(scene.scene, scene.bounds, size, 0, Output::linear)),
-      textures_(textures_of(scene_frame_)), scene_referred_(effect.stage == "scene") {
+      facts_(facts_of(scene.scene, scene.bounds, size, 0)), textures_(textures_of(scene_frame_)),
+      scene_referred_(effect.stage == "scene") {
     Image64 light = read_light(scene_frame_, "color", size.width, size.height);
     if (effect.stage == "display") {
         given_ = gl::Texture(size.width, size.height, Format::rgba16f);

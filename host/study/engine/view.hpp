@@ -29,7 +29,7 @@ public:
     /// `samples`: of the scene per pixel, 1 or 4.
     View(StudyScene& scene, const EffectInfo& effect, Size size, int samples);
 
-    const Facts& facts() const { return facts_; }
+    const SceneFacts& facts() const { return facts_; }
     const Textures& textures() const { return textures_; }
     FrameInputs frame() const;
     Size size() const { return {facts_.width, facts_.height}; }
@@ -47,7 +47,7 @@ public:
 private:
     SceneRenderer renderer_;
     SceneFrame scene_frame_;
-    Facts facts_;
+    SceneFacts facts_;
     Textures textures_;
     std::shared_ptr<const Image64> light_;
     gl::Texture given_;
