@@ -63,6 +63,15 @@ function(postfx_add_effect name)
     set_tests_properties(${name}_gl_test PROPERTIES
       ENVIRONMENT "POSTFX_PLUGIN_PATH=${CMAKE_BINARY_DIR}/postfx_plugins" SKIP_RETURN_CODE 77)
   endif()
+
+  file(GLOB truth CONFIGURE_DEPENDS ${effect_DIRECTORY}/truth/*.cpp)
+  if(truth)
+    if(COMMAND postfx_add_truth)
+      postfx_add_truth(${name} ${effect_DIRECTORY}/truth)
+    else()
+      message(STATUS "${name}: truth/ is left out: truths are part of the program, which is built in postfx's own tree")
+    endif()
+  endif()
 endfunction()
 
 # Every folder of <directory> is an effect of the folder's name. The target postfx_effects is all of them.

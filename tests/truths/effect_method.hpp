@@ -1,9 +1,8 @@
 // What metrics measure: effects of this build, and functions.
 #pragma once
 
-#include <catch2/catch.hpp>
+#include "truth_of.hpp"
 
-#include <testing.hpp>
 #include <truths/metric.hpp>
 
 #include <algorithm>
@@ -11,11 +10,6 @@
 #include <string>
 
 namespace postfx::testing {
-
-inline ChainEntry entry_of(const std::string& effect) {
-    Chain chain;
-    return chain.add(catalog(), effect);
-}
 
 /// One effect at one level, by OpenGL.
 class EffectMethod : public host::Method {
@@ -62,11 +56,59 @@ private:
     Function function_;
 };
 
+inline double value_of(const ChainEntry& entry, const std::string& parameter) {
+    return entry.values[*entry.effect->find_parameter(parameter)][0];
+}
+
 inline double measure(const std::string& name, const host::Method& method) {
     for (const host::RegisteredMetric& metric : host::registered_metrics()) {
         if (metric.effect == method.entry().effect->id && metric.name == name) return metric.measure(method);
     }
     throw Error("there is no metric " + name);
+}
+
+/// The picture as it was.
+inline Image64 unchanged(const ChainEntry&, const host::MethodInput& input) {
+    return convert<double>(input.color);
+}
+
+/// 0.99 of the light in the channels from `first` on.
+inline Image64 dimmed(const host::MethodInput& input, int first) {
+    Image64 picture = convert<double>(input.color);
+    for (std::size_t i = 0; i < picture.values.size(); ++i)
+        picture.values[i] *= static_cast<int>(i % 3) >= first ? 0.99 : 1;
+    return picture;
+}
+
+/// Every pixel from its place in picture heights from the centre, and its depth along the view axis [m], 0 without.
+using PixelFunction =
+    std::function<double(const ChainEntry&, const host::MethodInput&, double x, double y, double z)>;
+inline FunctionMethod::Function every_pixel(const PixelFunction& pixel) {
+    return [=](const ChainEntry& entry, const host::MethodInput& input) {
+        const int width = input.color.width, height = input.color.height;
+        const auto depth = input.attachments.find("depth");
+        Image64 result(width, height, 3);
+        for (int y = 0; y < height; ++y) {
+            for (int x = 0; x < width; ++x) {
+                const double z =
+                    depth == input.attachments.end() ? 0 : input.camera.view_z(depth->second.at(x, y, 0));
+                const double found =
+                    pixel(entry, input, (x + 0.5 - 0.5 * width) / height, (y + 0.5) / height - 0.5, z);
+                std::fill_n(result.pixel(x, y), 3, found);
+            }
+        }
+        return result;
+    };
+}
+
+/// Less light by that much.
+inline FunctionMethod::Function spoiled(const FunctionMethod::Function& draw, double by) {
+    return [=](const ChainEntry& entry, const host::MethodInput& input) {
+        Image64 result = draw(entry, input);
+        for (double& found : result.values)
+            found -= by;
+        return result;
+    };
 }
 
 } // namespace postfx::testing
