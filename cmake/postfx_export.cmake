@@ -5,6 +5,7 @@
 #   postfx::postfx           the embedding library
 #   postfx::testing          the harness of effects' tests, and
 #   postfx::gl_test_main     its main()
+#   postfx_PLUGIN_DIR        the folder of the effects that came with it
 include(CMakePackageConfigHelpers)
 
 set(config_dir lib/cmake/postfx)
@@ -45,10 +46,14 @@ add_custom_target(postfx_installed)
 add_dependencies(postfx_installed postfx_program postfx_effects ${libraries})
 
 set(POSTFX_LIBRARY_DEPENDENCIES "fmt OpenEXR yaml-cpp nlohmann_json OpenGL Catch2")
-# The same file for both; only the place of our CMake functions differs.
+file(STRINGS framework/include/postfx/plugin.h abi_major REGEX "^#define POSTFX_ABI_MAJOR ")
+string(REGEX REPLACE "[^0-9]" "" abi_major ${abi_major})
+# The same file for both; only the places of our CMake functions and of the plugins differ.
 set(POSTFX_FUNCTIONS_DIR ${PROJECT_SOURCE_DIR}/cmake)
+set(POSTFX_PLUGINS ${PROJECT_BINARY_DIR}/postfx_plugins)
 configure_file(cmake/postfx-config.cmake.in ${PROJECT_BINARY_DIR}/postfx-config.cmake @ONLY)
 set(POSTFX_FUNCTIONS_DIR "\${CMAKE_CURRENT_LIST_DIR}")
+set(POSTFX_PLUGINS "\${CMAKE_CURRENT_LIST_DIR}/../../postfx/plugins-${abi_major}")
 configure_file(cmake/postfx-config.cmake.in ${PROJECT_BINARY_DIR}/installed/postfx-config.cmake @ONLY)
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/postfx-config-version.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/installed/postfx-config.cmake ${PROJECT_BINARY_DIR}/postfx-config-version.cmake
@@ -57,8 +62,6 @@ install(FILES ${PROJECT_BINARY_DIR}/installed/postfx-config.cmake ${PROJECT_BINA
 install(DIRECTORY framework/include/postfx DESTINATION include)
 
 # The program finds its effects and data from its own place (catalog.hpp, host/run/resources.hpp).
-file(STRINGS framework/include/postfx/plugin.h abi_major REGEX "^#define POSTFX_ABI_MAJOR ")
-string(REGEX REPLACE "[^0-9]" "" abi_major ${abi_major})
 get_property(effects DIRECTORY PROPERTY BUILDSYSTEM_TARGETS)
 list(FILTER effects INCLUDE REGEX "^postfx_effect_")
 # A module whose effect's folder is gone would still be found and used.

@@ -122,7 +122,7 @@ TEST_CASE("outside GL a frame of nine effects costs at most 100 microseconds of 
     const Image color = test_picture();
     const Inputs inputs(color);
     const Plan plan = Planner().plan(nine_effects(), facts_of(color), linear_output());
-    Executor executor;
+    Executor executor{postfx::ExecutorOptions{.keep_gl_state = false}};
     executor.prepare(plan);
     const postfx::FrameInputs frame = inputs.of(plan);
     executor.run(frame);
@@ -144,7 +144,10 @@ TEST_CASE("outside GL a frame of nine effects costs at most 100 microseconds of 
         const POSTFX_GL_HOOK(glPushDebugGroup) push(true);
         const POSTFX_GL_HOOK(glPopDebugGroup) pop(true);
         const POSTFX_GL_HOOK(glBindFramebuffer) bind_framebuffer(true);
-        const POSTFX_GL_HOOK(glViewport) viewport(true);
+        const POSTFX_GL_HOOK(glViewportIndexedf) viewport(true);
+        const POSTFX_GL_HOOK(glDisablei) disable_indexed(true);
+        const POSTFX_GL_HOOK(glClipControl) clip_control(true);
+        const POSTFX_GL_HOOK(glIsTexture) is_texture;
         const POSTFX_GL_HOOK(glUseProgram) use_program(true);
         const POSTFX_GL_HOOK(glBindTextureUnit) bind_texture(true);
         const POSTFX_GL_HOOK(glBindSampler) bind_sampler(true);

@@ -265,7 +265,7 @@ TEST_CASE("wrong use is an Error") {
     CHECK_THROWS_WITH(executor.read_picture(), "read_picture() before any run()");
     const Image color = test_picture();
     executor.prepare(Planner().plan(chain_of({"tint"}), facts_of(color), linear_output()));
-    CHECK_THROWS_WITH(executor.run({}), "the plan reads 1 attachments, 0 were given");
+    CHECK_THROWS_WITH(executor.run({}), "the plan reads 1 attachments (color), 0 were given");
 }
 
 TEST_CASE("no compose function reaches what others in its pass see") {

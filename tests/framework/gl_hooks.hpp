@@ -1,13 +1,13 @@
 // Standing between the code and OpenGL: counting calls, or swallowing them. Works on glad's function pointers.
 #pragma once
 
-#include <glad/gl.h>
+#include <postfx_glad/gl.h>
 
 #include <tuple>
 
 namespace postfx::testing {
 
-/// While it lives, calls through one of glad's pointers are counted, and forwarded unless `swallow`.
+/// While it lives, calls through one of the loader's pointers are counted, and forwarded unless `swallow`.
 template<class Pointer, Pointer* slot>
 class GlHook;
 
@@ -39,7 +39,7 @@ private:
     static inline int calls_ = 0;
 };
 
-#define POSTFX_GL_HOOK(function) ::postfx::testing::GlHook<decltype(glad_##function), &glad_##function>
+#define POSTFX_GL_HOOK(function) ::postfx::testing::GlHook<decltype(postfx_glad_##function), &postfx_glad_##function>
 
 /// Hooks on several functions at once.
 template<class... Hooks>

@@ -1,4 +1,7 @@
-// The effects that were found: plugins opened, their declarations checked and copied.
+// The effects that were found: plugins opened, their declarations checked and copied. No OpenGL.
+//
+// Threads: a catalog is made and filled by one thread at a time; what is const, and every EffectInfo, is [any thread].
+// Errors: postfx::Error, naming the file, and where there is one the effect and the field.
 #pragma once
 
 #include <postfx/plugin.h>
@@ -81,10 +84,15 @@ using EffectPtr = std::shared_ptr<const EffectInfo>;
 /// Effects by id, in alphabetical order.
 class Catalog {
 public:
-    /// Where plugins are looked for, first hit by effect id wins: `first` (--plugin-dir), then
-    /// POSTFX_PLUGIN_PATH, the user's data directory, the install prefix or build tree relative to the
-    /// library. Never the current directory: empty, relative or world-writable entries are refused with a
-    /// note.
+    /// Where plugins are looked for, first hit by effect id wins:
+    ///   1. `first`: of a program, what it was told; of an engine, the CMake package's postfx_PLUGIN_DIR;
+    ///   2. the absolute directories of POSTFX_PLUGIN_PATH, between colons;
+    ///   3. the user's: $XDG_DATA_HOME/postfx/plugins;
+    ///   4. postfx_plugins/ beside the program and ../lib/postfx/plugins-<ABI major> from there, then the same of the
+    ///      shared library that postfx is in, if it is in one;
+    ///   5. lib/postfx/plugins-<ABI major> of the prefix that it was configured for.
+    /// Never the current directory: empty, relative or world-writable entries are refused with a note. Throws Error for a
+    /// directory of `first` that is not there.
     static Catalog discover(const std::vector<std::filesystem::path>& first = {});
 
     /// Open one module and add its effects. Throws Error when it is not a plugin or has another major
@@ -99,8 +107,11 @@ public:
     /// Null when there is none.
     EffectPtr find(std::string_view id) const;
     std::vector<std::string> ids() const;
-    /// Directories searched, modules refused and why, shadowed copies: one line each.
+    /// What is not as it should be, one line each: directories and modules refused and why, shadowed copies; and when
+    /// discover() found no effect at all, where it looked.
     const std::vector<std::string>& notes() const { return notes_; }
+    /// Where discover() looked, in that order, also where nothing is.
+    const std::vector<std::filesystem::path>& searched() const { return searched_; }
 
 private:
     void scan(const std::filesystem::path& directory);
@@ -108,6 +119,7 @@ private:
 
     std::vector<EffectPtr> effects_;
     std::vector<std::string> notes_;
+    std::vector<std::filesystem::path> searched_;
 };
 
 } // namespace postfx

@@ -2,7 +2,7 @@
 
 #include <postfx/error.hpp>
 
-#include <glad/gl.h>
+#include <postfx_glad/gl.h>
 
 #include <fmt/format.h>
 

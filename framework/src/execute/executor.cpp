@@ -1,5 +1,7 @@
 #include <execute/device_limits.hpp>
+#include <execute/frame_checks.hpp>
 #include <execute/frame_decisions.hpp>
+#include <execute/framebuffer_output.hpp>
 #include <execute/nonfinite_watch.hpp>
 #include <execute/program_cache.hpp>
 #include <execute/tap_counts.hpp>
@@ -8,6 +10,7 @@
 #include <gl/clock.hpp>
 #include <gl/context.hpp>
 #include <gl/objects.hpp>
+#include <gl/pass_state.hpp>
 #include <plan/condition.hpp>
 #include <plan/frame_block.hpp>
 
@@ -31,16 +34,6 @@ FrameBlock block_of(const Plan& plan, const FrameInputs& inputs) {
     block.frame = inputs.frame;
     block.seed = inputs.seed;
     return block;
-}
-
-/// The fixed state that full-screen passes rely on, whatever the host drew before.
-void set_pass_state() {
-    for (GLenum capability : {GL_BLEND, GL_DEPTH_TEST, GL_STENCIL_TEST, GL_SCISSOR_TEST, GL_CULL_FACE,
-                              GL_FRAMEBUFFER_SRGB, GL_DITHER, GL_COLOR_LOGIC_OP, GL_RASTERIZER_DISCARD}) {
-        glDisable(capability);
-    }
-    glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
-    glPolygonMode(GL_FRONT_AND_BACK, GL_FILL);
 }
 
 using TexturePtr = std::shared_ptr<gl::Texture>;
@@ -69,11 +62,14 @@ struct Executor::State {
         std::optional<TapCounts> taps;           ///< if programs count them
         ProgramCount programs;
         std::unique_ptr<WarmUp> warm_up; ///< if there is one, until the first run is over
+        gl::StateUse state_use;
     };
 
-    explicit State(std::filesystem::path cache)
-        : programs(std::move(cache)), vertex_array(gl::make_vertex_array()), nearest(gl::make_sampler(false)),
-          linear(gl::make_sampler(true)), frame_buffer(gl::make_buffer(sizeof(FrameBlock), nullptr)) {}
+    explicit State(ExecutorOptions options)
+        : context(gl::require_context(options.get_proc_address)), keep_gl_state(options.keep_gl_state),
+          programs(std::move(options.program_cache)), vertex_array(gl::make_vertex_array()),
+          nearest(gl::make_sampler(false)), linear(gl::make_sampler(true)),
+          frame_buffer(gl::make_buffer(sizeof(FrameBlock), nullptr)) {}
 
     GLuint texture(const Ready& ready, const ImageRef& image,
                    const std::vector<std::uint32_t>& attachments) const {
@@ -81,9 +77,15 @@ struct Executor::State {
                                                         : ready.targets[image.index]->name();
     }
 
+    /// Does the current plan draw into it?
+    bool owns(GLuint name) const {
+        return std::any_of(current.targets.begin(), current.targets.end(),
+                           [&](const TexturePtr& target) { return target->name() == name; });
+    }
+
     /// What all passes of a frame rely on.
     void begin_frame(const FrameBlock& block) const {
-        set_pass_state();
+        gl::set_pass_state();
         glNamedBufferSubData(frame_buffer.name(), 0, sizeof(block), &block);
         glBindBufferBase(GL_UNIFORM_BUFFER, 0, frame_buffer.name());
         glBindVertexArray(vertex_array.name());
@@ -92,11 +94,31 @@ struct Executor::State {
         if (current.taps) current.taps->begin_frame();
     }
 
-    /// The host's own draws must not sample through our sampler objects.
-    static void end_frame() {
-        for (GLuint unit = 0; unit < 16; ++unit)
+    /// Throws Error where names of GL objects would be somebody else's.
+    void expect_context() const {
+        if (!context.is_current())
+            throw Error(
+                "another OpenGL context is current than the one that this executor was made in, or none");
+    }
+
+    /// Hold it while drawing: the host's state comes back when it dies, if that is wished.
+    std::optional<gl::SavedState> save_gl_state() const {
+        if (keep_gl_state) return std::optional<gl::SavedState>(std::in_place, current.state_use);
+        if (gl::transform_feedback_runs()) {
+            throw Error("transform feedback is running: pause it before run(), or leave "
+                        "ExecutorOptions::keep_gl_state on");
+        }
+        return std::nullopt;
+    }
+
+    /// What the host must not meet even where its state is not kept: our samplers in its own draws, and programs and
+    /// targets that end with this.
+    void end_frame() const {
+        if (keep_gl_state) return;
+        for (GLuint unit = 0; unit < gl::SavedState::most_texture_units; ++unit)
             glBindSampler(unit, 0);
         glBindFramebuffer(GL_DRAW_FRAMEBUFFER, 0);
+        glUseProgram(0);
     }
 
     void execute(std::size_t index, const std::vector<std::uint32_t>& attachments) const {
@@ -110,7 +132,7 @@ struct Executor::State {
         }
         if (pass.kind == PassKind::draw) {
             glBindFramebuffer(GL_DRAW_FRAMEBUFFER, ready_pass.framebuffer.name());
-            glViewport(0, 0, pass.width, pass.height);
+            glViewportIndexedf(0, 0, 0, static_cast<float>(pass.width), static_cast<float>(pass.height));
         }
         glUseProgram(ready_pass.program);
         if (ready_pass.block) glBindBufferBase(GL_UNIFORM_BUFFER, 1, ready_pass.block.name());
@@ -129,6 +151,13 @@ struct Executor::State {
         }
     }
 
+    /// Throws Error for inputs that the current plan can't be drawn with.
+    void check(const FrameInputs& inputs) const;
+    /// The current plan's passes.
+    void draw(const FrameInputs& inputs, Timing timing, Watch watch_for);
+
+    gl::CurrentContext context; ///< first: what follows needs its functions
+    bool keep_gl_state;
     ProgramCache programs;
     gl::VertexArray vertex_array;
     gl::Sampler nearest, linear;
@@ -138,6 +167,7 @@ struct Executor::State {
     std::optional<gl::TimestampRing> ring;
     std::optional<gl::ClockCheck> clock;
     std::optional<NonfiniteWatch> watch;
+    std::optional<FramebufferOutput> output; ///< from the first run on that wants it
     Timing last_timing = Timing::off;
     Watch last_watch = Watch::off;
     bool prepared = false;
@@ -223,6 +253,15 @@ ProgramCount count_programs(const Plan& plan, const ProgramCache& cache) {
     return count;
 }
 
+gl::StateUse state_use(const Plan& plan) {
+    gl::StateUse use{.texture_units = 1, .buffer_texture_unit = has_tiles(plan), .storage_buffers = 1};
+    for (const Pass& pass : plan.passes)
+        use.texture_units = std::max(use.texture_units, pass.inputs.size());
+    if (!plan.decisions.empty() || has_tiles(plan))
+        use.storage_buffers = gl::SavedState::most_storage_buffers;
+    return use;
+}
+
 /// Same passes into the same targets: only numbers in the uniform blocks may differ.
 bool same_structure(const Plan& a, const Plan& b) {
     const auto same_target = [](const Target& x, const Target& y) {
@@ -240,13 +279,23 @@ bool same_structure(const Plan& a, const Plan& b) {
 } // namespace
 
 Executor::Executor(std::filesystem::path program_cache)
-    : state_(std::make_unique<State>(std::move(program_cache))) {}
-Executor::~Executor() = default;
+    : Executor(ExecutorOptions{.program_cache = std::move(program_cache)}) {}
+Executor::Executor(ExecutorOptions options) : state_(std::make_unique<State>(std::move(options))) {}
 Executor::Executor(Executor&&) noexcept = default;
-Executor& Executor::operator=(Executor&&) noexcept = default;
+
+Executor::~Executor() {
+    const gl::LeaveObjects leave(state_ && !state_->context.is_current());
+    state_.reset();
+}
+
+Executor& Executor::operator=(Executor&& other) noexcept {
+    std::swap(state_, other.state_); // what was here ends with `other`, in its own context or without it
+    return *this;
+}
 
 void Executor::prepare(const Plan& plan, const std::vector<Format>& formats) {
     State& state = *state_;
+    state.expect_context();
     if (!state.current.passes.empty() && same_structure(plan, state.current.plan)) {
         for (std::size_t i = 0; i < plan.passes.size(); ++i) {
             const auto& bytes = plan.passes[i].uniform_block;
@@ -286,6 +335,7 @@ void Executor::prepare(const Plan& plan, const std::vector<Format>& formats) {
     if (!plan.decisions.empty()) ready.decisions.emplace(plan);
     if (has_tiles(plan)) ready.tiles.emplace(plan, state.programs);
     if (counts_taps(plan)) ready.taps.emplace(plan.passes.size());
+    ready.state_use = state_use(plan);
     ready.plan = plan;
     state.current = std::move(ready);
     state.profile.assign(plan.passes.size(), {});
@@ -297,75 +347,98 @@ void Executor::prepare(const Plan& plan, const std::vector<Format>& formats) {
     state.picture = 0;
 }
 
-std::uint32_t Executor::run(const FrameInputs& inputs, Timing timing, Watch watch) {
-    State& state = *state_;
-    const Plan& plan = state.current.plan;
-    if (!state.prepared) throw Error("run() before any prepare()");
-    if (inputs.textures.size() != plan.attachments.size()) {
-        throw Error(fmt::format("the plan reads {} attachments, {} were given", plan.attachments.size(),
-                                inputs.textures.size()));
-    }
-    set_pass_state(); // before the clock is checked, which draws too
-    if (timing == Timing::gpu && !state.ring) state.ring.emplace(plan.passes.size());
-    if (timing != Timing::off && !state.clock) state.clock = gl::check_clock();
-    state.last_timing = timing;
-    if (watch == Watch::nonfinite && !state.watch) state.watch.emplace(plan);
-    state.last_watch = watch;
+void Executor::State::check(const FrameInputs& inputs) const {
+    if (!prepared) throw Error("run() before any prepare()");
+    expect_context();
+    check_textures(current.plan, inputs.textures, [&](std::uint32_t texture) { return owns(texture); });
+    check_camera(inputs.camera);
+    check_time(inputs.time);
+}
 
-    state.begin_frame(block_of(plan, inputs));
-    if (watch == Watch::nonfinite) {
-        state.watch->begin_frame();
+void Executor::State::draw(const FrameInputs& inputs, Timing timing, Watch watch_for) {
+    const Plan& plan = current.plan;
+    gl::set_pass_state(); // before the clock is checked, which draws too
+    if (timing == Timing::gpu && !ring) ring.emplace(plan.passes.size());
+    if (timing != Timing::off && !clock) clock = gl::check_clock();
+    last_timing = timing;
+    if (watch_for == Watch::nonfinite && !watch) watch.emplace(plan);
+    last_watch = watch_for;
+
+    begin_frame(block_of(plan, inputs));
+    if (watch_for == Watch::nonfinite) {
+        watch->begin_frame();
         for (GLuint attachment : inputs.textures)
-            state.watch->count(attachment, plan.width, plan.height);
+            watch->count(attachment, plan.width, plan.height);
     }
     if (timing == Timing::gpu) {
-        state.ring->begin_frame();
-        state.ring->mark();
+        ring->begin_frame();
+        ring->mark();
     } else if (timing == Timing::profile) {
         glFinish();
     }
     for (std::size_t i = 0; i < plan.passes.size(); ++i) {
         const gl::HostTime start = timing == Timing::profile ? gl::HostTime::now() : gl::HostTime{};
-        if (state.current.warm_up) state.current.warm_up->leave(i);
-        state.execute(i, inputs.textures);
+        if (current.warm_up) current.warm_up->leave(i);
+        execute(i, inputs.textures);
         if (timing == Timing::profile) {
             glFinish();
             const gl::HostTime end = gl::HostTime::now();
-            state.profile[i] = {end.cpu_ms - start.cpu_ms, end.wall_ms - start.wall_ms};
+            profile[i] = {end.cpu_ms - start.cpu_ms, end.wall_ms - start.wall_ms};
         } else if (timing == Timing::gpu) {
-            state.ring->mark();
+            ring->mark();
         }
-        if (watch == Watch::nonfinite) {
+        if (watch_for == Watch::nonfinite) {
             for (const ImageRef& output : plan.passes[i].outputs) {
-                state.watch->count(state.texture(state.current, output, inputs.textures),
-                                   plan.passes[i].width, plan.passes[i].height);
+                watch->count(texture(current, output, inputs.textures), plan.passes[i].width,
+                             plan.passes[i].height);
             }
             if (timing == Timing::profile) glFinish(); // not to be counted in the next pass's time
         }
     }
-    if (timing == Timing::gpu) state.ring->end_frame();
-    State::end_frame();
-    if (state.current.warm_up) {
-        state.current.programs.warmed = state.current.warm_up->warmed();
-        state.current.warm_up.reset();
+    if (timing == Timing::gpu) ring->end_frame();
+    if (current.warm_up) {
+        current.programs.warmed = current.warm_up->warmed();
+        current.warm_up.reset();
     }
 
-    state.picture = state.texture(state.current, plan.picture, inputs.textures);
+    picture = texture(current, plan.picture, inputs.textures);
+}
+
+std::uint32_t Executor::run(const FrameInputs& inputs, Timing timing, Watch watch) {
+    State& state = *state_;
+    state.check(inputs);
+    const std::optional<gl::SavedState> saved = state.save_gl_state();
+    state.draw(inputs, timing, watch);
+    state.end_frame();
     return state.picture;
+}
+
+void Executor::run(const FrameInputs& inputs, const OutputTarget& output, Timing timing, Watch watch) {
+    State& state = *state_;
+    state.check(inputs);
+    check_output(output);
+    const std::optional<gl::SavedState> saved = state.save_gl_state();
+    state.draw(inputs, timing, watch);
+    if (!state.output) state.output.emplace();
+    state.output->draw(state.picture, state.current.plan.width, state.current.plan.height, output);
+    state.end_frame();
 }
 
 void Executor::compile(const std::vector<std::uint32_t>& textures) {
     const State& state = *state_;
+    state.expect_context();
+    const std::optional<gl::SavedState> saved = state.save_gl_state();
     state.begin_frame({});
     glEnable(GL_RASTERIZER_DISCARD);
     for (std::size_t i = 0; i < state.current.plan.passes.size(); ++i)
         state.execute(i, textures);
     glDisable(GL_RASTERIZER_DISCARD);
-    State::end_frame();
+    state.end_frame();
 }
 
 Report Executor::report() const {
     const State& state = *state_;
+    state.expect_context();
     Report report = describe(state.current.plan);
     report.programs = state.current.programs;
     if (state.current.decisions && state.picture)
@@ -399,6 +472,7 @@ Image Executor::read_picture() const {
     const State& state = *state_;
     const Plan& plan = state.current.plan;
     if (!state.picture) throw Error("read_picture() before any run()");
+    state.expect_context();
     // An input that came through untouched is read as floats: wide enough for any format that it may have.
     const bool own = plan.picture.kind == ImageRef::Kind::target;
     const Format format = own ? plan.targets[plan.picture.index].format : Format::rgba32f;

@@ -55,7 +55,7 @@ class HeavyDraw {
 public:
     HeavyDraw() {
         glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_.name());
-        glViewport(0, 0, size, size);
+        glViewportIndexedf(0, 0, 0, size, size);
         glUseProgram(program_.name());
         glBindVertexArray(vertex_array_.name());
         measure(1); // compiles

@@ -2,10 +2,12 @@
 
 #include <postfx/error.hpp>
 
-#include <glad/gl.h>
+#include <postfx_glad/gl.h>
 
 #include <EGL/egl.h>
 #include <EGL/eglext.h>
+
+#include <dlfcn.h>
 
 #include <fmt/format.h>
 
@@ -13,6 +15,7 @@
 #include <array>
 #include <cctype>
 #include <cstdlib>
+#include <mutex>
 #include <string_view>
 
 namespace postfx::gl {
@@ -23,7 +26,7 @@ constexpr std::string_view what_to_install =
     "(Debian: apt-get install libgl1-mesa-dri libegl-mesa0)";
 
 std::string gl_string(GLenum name) {
-    const GLubyte* text = glad_glGetString ? glGetString(name) : nullptr;
+    const GLubyte* text = postfx_glad_glGetString ? glGetString(name) : nullptr;
     return text ? reinterpret_cast<const char*>(text) : "unknown";
 }
 
@@ -111,15 +114,81 @@ EGLContext create_context(EGLDisplay display, EGLConfig config, bool debug) {
     return context != EGL_NO_CONTEXT ? context : eglCreateContext(display, config, EGL_NO_CONTEXT, nullptr);
 }
 
-/// Load the current context's functions: "" if it is 4.5, else what was found.
-std::string load_failure(FunctionLoader loader) {
-    if (gladLoadGL(loader) && GLAD_GL_VERSION_4_5) return "";
+std::string found_instead() {
     const DeviceInfo found = current_device();
     return fmt::format("found OpenGL \"{}\" by \"{}\" on \"{}\"", found.version, found.vendor,
                        found.renderer);
 }
 
+/// The functions are the process's: window systems give the same ones for every context.
+std::mutex loading;
+bool functions_are_loaded = false;
+
+/// Load the current context's functions: "" if it is 4.5, else what was found.
+std::string load_failure(FunctionLoader loader) {
+    const std::lock_guard lock(loading);
+    if (!postfx_glad_loadGL(loader) || !POSTFX_GLAD_GL_VERSION_4_5) return found_instead();
+    functions_are_loaded = true;
+    return "";
+}
+
+/// A function of a library that the program has loaded already, for itself only or for all; null if it has not.
+void* loaded_symbol(const char* library, const char* name) {
+    void* handle = dlopen(library, RTLD_LAZY | RTLD_NOLOAD);
+    if (!handle) return nullptr;
+    void* symbol = dlsym(handle, name);
+    dlclose(handle); // one count less: the program's own keeps it loaded
+    return symbol;
+}
+
+void* glx_symbol(const char* name) {
+    for (const char* library : {"libGLX.so.0", "libGL.so.1"}) {
+        if (void* symbol = loaded_symbol(library, name)) return symbol;
+    }
+    return nullptr;
+}
+
+GLADapiproc call_get_proc_address(void* get_proc_address, const char* name) {
+    const auto& function = *static_cast<const std::function<void*(const char*)>*>(get_proc_address);
+    return reinterpret_cast<GLADapiproc>(function(name));
+}
+
+bool is_at_least_4_5() {
+    GLint major = 0, minor = 0;
+    glGetIntegerv(GL_MAJOR_VERSION, &major);
+    glGetIntegerv(GL_MINOR_VERSION, &minor);
+    return major > 4 || (major == 4 && minor >= 5);
+}
+
 } // namespace
+
+CurrentContext::CurrentContext() : ask_(eglGetCurrentContext), loader_(eglGetProcAddress) {
+    context_ = ask_();
+    if (context_) return;
+    ask_ = reinterpret_cast<void* (*)()>(glx_symbol("glXGetCurrentContext"));
+    loader_ = reinterpret_cast<FunctionLoader>(glx_symbol("glXGetProcAddressARB"));
+    context_ = ask_ ? ask_() : nullptr;
+}
+
+CurrentContext require_context(const std::function<void*(const char* name)>& get_proc_address) {
+    const CurrentContext context;
+    if (!context.found() && !get_proc_address) {
+        throw Error(
+            "no OpenGL context is current on this thread, neither by EGL nor by GLX; make one current, "
+            "or give ExecutorOptions::get_proc_address where another window system has made it");
+    }
+    const std::lock_guard lock(loading);
+    if (!functions_are_loaded) {
+        // Not const: the loader's interface is C's.
+        std::function<void*(const char*)> given = get_proc_address;
+        const int version = given ? postfx_glad_loadGLUserPtr(call_get_proc_address, &given)
+                                  : postfx_glad_loadGL(context.loader());
+        functions_are_loaded = version != 0 && POSTFX_GLAD_GL_VERSION_4_5 != 0;
+    }
+    if (!functions_are_loaded || !is_at_least_4_5())
+        throw Error(fmt::format("{}; {}", found_instead(), what_to_install));
+    return context;
+}
 
 DeviceInfo current_device() {
     DeviceInfo info;

@@ -1,6 +1,7 @@
 // OpenGL 4.5 core without a display, through EGL.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -23,6 +24,28 @@ using FunctionLoader = void (*(*)(const char* name))();
 /// Load the GL functions of the current context and check that it is 4.5; throws Error that says what was
 /// found and what to install.
 void load_functions(FunctionLoader loader);
+
+/// The context that was current on the thread that made this, as EGL or GLX names it.
+class CurrentContext {
+public:
+    /// Finds nothing where neither has a current context; then is_current() can't be told and is true.
+    CurrentContext();
+
+    bool found() const { return context_ != nullptr; }
+    /// Is it current on the calling thread? [any thread]
+    bool is_current() const { return !context_ || ask_() == context_; }
+    /// How its window system finds a GL function; null when it was not found.
+    FunctionLoader loader() const { return loader_; }
+
+private:
+    void* (*ask_)() = nullptr;
+    FunctionLoader loader_ = nullptr;
+    void* context_ = nullptr;
+};
+
+/// The current context, with its functions loaded if nobody has yet: by `get_proc_address`, or else as its window
+/// system does. Throws Error when there is none or it is older than 4.5. [any thread]
+CurrentContext require_context(const std::function<void*(const char* name)>& get_proc_address);
 
 /// A context of its own, current on this thread from construction on. Tries EGL devices with a GPU first,
 /// then Mesa surfaceless; POSTFX_GL=surfaceless|device forces one (`device` takes a software device too).

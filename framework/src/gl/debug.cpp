@@ -1,6 +1,6 @@
 #include <gl/context.hpp>
 
-#include <glad/gl.h>
+#include <postfx_glad/gl.h>
 
 #include <fmt/format.h>
 
@@ -72,11 +72,11 @@ DebugGroup::DebugGroup(const char* name) {
     // Drivers refuse messages beyond a length of their own (4096 in Mesa): a pass of many effects has a long name.
     constexpr std::size_t longest = 255;
     const auto length = static_cast<GLsizei>(std::min(std::strlen(name), longest));
-    if (glad_glPushDebugGroup) glPushDebugGroup(GL_DEBUG_SOURCE_APPLICATION, 0, length, name);
+    if (postfx_glad_glPushDebugGroup) glPushDebugGroup(GL_DEBUG_SOURCE_APPLICATION, 0, length, name);
 }
 
 DebugGroup::~DebugGroup() {
-    if (glad_glPopDebugGroup) glPopDebugGroup();
+    if (postfx_glad_glPopDebugGroup) glPopDebugGroup();
 }
 
 } // namespace postfx::gl

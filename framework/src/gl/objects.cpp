@@ -1,4 +1,5 @@
 #include <gl/objects.hpp>
+#include <gl/pass_state.hpp>
 
 #include <postfx/error.hpp>
 
@@ -78,6 +79,8 @@ std::string_view status_name(GLenum status) {
 
 } // namespace
 
+thread_local bool LeaveObjects::active_ = false;
+
 void destroy_texture(GLuint name) {
     glDeleteTextures(1, &name);
 }
@@ -130,7 +133,7 @@ void Texture::upload(const Image& image) {
 
 Image read_texture(GLuint texture, int width, int height, Format format) {
     Image image(width, height, format_info(format).channels);
-    glPixelStorei(GL_PACK_ALIGNMENT, 1);
+    const TightPacking packing;
     glGetTextureImage(texture, 0, gl_format(format).channels, GL_FLOAT,
                       static_cast<GLsizei>(image.values.size() * sizeof(float)), image.values.data());
     return image;
@@ -139,7 +142,7 @@ Image read_texture(GLuint texture, int width, int height, Format format) {
 std::vector<unsigned char> read_texture_codes(GLuint texture, int width, int height, int channels) {
     std::vector<unsigned char> codes(static_cast<std::size_t>(width) * static_cast<std::size_t>(height)
                                      * static_cast<std::size_t>(channels));
-    glPixelStorei(GL_PACK_ALIGNMENT, 1);
+    const TightPacking packing;
     glGetTextureImage(texture, 0, color_channels(channels), GL_UNSIGNED_BYTE,
                       static_cast<GLsizei>(codes.size()), codes.data());
     return codes;

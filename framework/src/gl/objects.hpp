@@ -4,7 +4,7 @@
 #include <postfx/format.hpp>
 #include <postfx/image.hpp>
 
-#include <glad/gl.h>
+#include <postfx_glad/gl.h>
 
 #include <cstddef>
 #include <string>
@@ -13,6 +13,22 @@
 #include <vector>
 
 namespace postfx::gl {
+
+/// While one that was made with `true` lives, handles that die on this thread leave their GL objects alone: their
+/// context is not current, and in another one their names are somebody else's.
+class LeaveObjects {
+public:
+    explicit LeaveObjects(bool leave) : before_(std::exchange(active_, leave)) {}
+    ~LeaveObjects() { active_ = before_; }
+    LeaveObjects(const LeaveObjects&) = delete;
+    LeaveObjects& operator=(const LeaveObjects&) = delete;
+
+    static bool active() { return active_; }
+
+private:
+    static thread_local bool active_;
+    bool before_;
+};
 
 /// Owns one GL name; `destroy` is the matching glDelete.
 template<void (*destroy)(GLuint)>
@@ -26,7 +42,7 @@ public:
         return *this;
     }
     ~Handle() {
-        if (name_) destroy(name_);
+        if (name_ && !LeaveObjects::active()) destroy(name_);
     }
     GLuint name() const { return name_; }
     explicit operator bool() const { return name_ != 0; }

@@ -21,6 +21,30 @@ namespace fs = std::filesystem;
 namespace postfx {
 namespace {
 
+fs::path installed_below(const fs::path& prefix) {
+    return prefix / fmt::format("lib/postfx/plugins-{}", POSTFX_ABI_MAJOR);
+}
+
+/// The folder of the shared library that this code is in; "" where it was linked into the program.
+fs::path library_directory() {
+    Dl_info info{};
+    link_map* map = nullptr;
+    if (dladdr1(reinterpret_cast<const void*>(&library_directory), &info, reinterpret_cast<void**>(&map),
+                RTLD_DL_LINKMAP)
+            == 0
+        || !map) {
+        return {};
+    }
+    // The program's own entry has no name; a relative one would be looked up in the current directory.
+    const fs::path file = map->l_name;
+    return file.is_absolute() ? file.parent_path() : fs::path();
+}
+
+/// Where a build tree and an installation have the plugins of what is in `directory`.
+std::vector<fs::path> plugins_beside(const fs::path& directory) {
+    return {directory / "postfx_plugins", installed_below(directory.parent_path())};
+}
+
 /// Directories of the user, the installation and the build tree, in the order in which they are asked.
 std::vector<fs::path> standard_directories() {
     std::vector<fs::path> directories;
@@ -31,10 +55,12 @@ std::vector<fs::path> standard_directories() {
     }
     std::error_code ignored;
     const fs::path program = fs::read_symlink("/proc/self/exe", ignored).parent_path();
-    if (!program.empty()) {
-        directories.push_back(program / "postfx_plugins");
-        directories.push_back(program.parent_path() / fmt::format("lib/postfx/plugins-{}", POSTFX_ABI_MAJOR));
+    for (const fs::path& place : {program, library_directory()}) {
+        if (place.empty()) continue;
+        for (fs::path& directory : plugins_beside(place))
+            directories.push_back(std::move(directory));
     }
+    directories.push_back(installed_below(POSTFX_INSTALL_PREFIX));
     return directories;
 }
 
@@ -137,10 +163,16 @@ Catalog Catalog::discover(const std::vector<fs::path>& first) {
     }
     for (const fs::path& directory : standard_directories())
         catalog.scan(directory);
+    if (catalog.effects_.empty()) {
+        for (const fs::path& directory : catalog.searched_)
+            catalog.notes_.push_back(fmt::format("no effect was found in {}", directory.string()));
+    }
     return catalog;
 }
 
 void Catalog::scan(const fs::path& directory) {
+    if (std::find(searched_.begin(), searched_.end(), directory) != searched_.end()) return;
+    searched_.push_back(directory);
     std::error_code missing;
     if (!fs::is_directory(directory, missing)) return;
     if (const std::string unsafe = why_unsafe(directory); !unsafe.empty()) {
