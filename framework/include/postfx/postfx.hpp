@@ -8,6 +8,7 @@
 //     std::uint32_t picture = executor.run(inputs);               // a GL texture
 #pragma once
 
+#include <postfx/attachment.hpp>
 #include <postfx/budget.hpp>
 #include <postfx/camera.hpp>
 #include <postfx/catalog.hpp>

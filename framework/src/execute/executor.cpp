@@ -160,7 +160,7 @@ void tell_decisions(const FrameDecisions::Outcome& outcome, const Plan& plan, Re
                 fmt::format("{}; frame: {}", plan.effects[&effect - report.effects.data()].reason, numbers);
         } else {
             effect.status = EffectStatus::skipped;
-            effect.moment = "frame";
+            effect.moment = Moment::frame;
             effect.kind = decision.kind;
             effect.reason = numbers;
         }

@@ -85,8 +85,8 @@ public:
 
     /// `codes`: how strongly the picture shows changes of what this effect gives.
     void add(const ChainEntry& entry, const Codes& codes) {
-        plan_.effects.push_back({entry.name, entry.effect->id, EffectStatus::ran, "", "", ""});
-        if (!entry.enabled) return skip({"configuration", "exact", "enabled is false"});
+        plan_.effects.push_back({entry.name, entry.effect->id});
+        if (!entry.enabled) return skip({Moment::configuration, SkipKind::exact, "enabled is false"});
         const Recording recording = record(entry, facts_, options_.working_format, skip_, codes);
         if (recording.identity) return skip(*recording.identity);
         warn_about_order(entry);
@@ -411,14 +411,14 @@ private:
     }
 
     void warn_about_order(const ChainEntry& entry) {
-        const std::string& stage = entry.effect->stage;
-        if (stage != "display" && !display_since_.empty()) {
+        const EffectStage stage = entry.effect->stage;
+        if (stage != EffectStage::display && !display_since_.empty()) {
             plan_.warnings.push_back(
                 fmt::format("{} works on scene-linear light, but stands after {}, which made it "
                             "display light",
                             entry.name, display_since_));
         }
-        if (stage == "scene_to_display") {
+        if (stage == EffectStage::scene_to_display) {
             if (!early_display_.empty()) {
                 plan_.warnings.push_back(
                     fmt::format("{} belongs after {}, which makes the display light that it "
@@ -426,7 +426,7 @@ private:
                                 early_display_, entry.name));
             }
             display_since_ = entry.name;
-        } else if (stage == "display" && display_since_.empty()) {
+        } else if (stage == EffectStage::display && display_since_.empty()) {
             early_display_ = entry.name;
         }
     }
@@ -446,18 +446,6 @@ private:
 };
 
 } // namespace
-
-std::string_view status_name(EffectStatus status) {
-    switch (status) {
-    case EffectStatus::ran:
-        return "ran";
-    case EffectStatus::fused:
-        return "fused";
-    case EffectStatus::skipped:
-        return "skipped";
-    }
-    return "";
-}
 
 std::size_t Target::bytes() const {
     return static_cast<std::size_t>(width) * height * format_info(format).bytes_per_pixel;

@@ -43,12 +43,21 @@ std::string condition_text(const Plan& plan, const Condition& condition) {
     return terms.empty() ? "" : fmt::format("if {}", fmt::join(terms, " or "));
 }
 
+/// "" of an effect that is not skipped, as the kind is.
+std::string_view moment_text(const PlannedEffect& effect) {
+    return effect.moment ? moment_word(*effect.moment) : "";
+}
+
+std::string_view kind_text(const PlannedEffect& effect) {
+    return effect.kind ? skip_kind_word(*effect.kind) : "";
+}
+
 /// What a frame may skip, before it is known.
 std::string decision_text(const Plan& plan, const PlannedEffect& effect) {
     if (effect.decision < 0) return "";
     const Decision& decision = plan.decisions[effect.decision];
     return fmt::format("; the frame skips it where {} <= {} ({})", decision.compared, decision.limit,
-                       decision.kind);
+                       skip_kind_word(decision.kind));
 }
 
 std::string time_text(const PassReport& pass) {
@@ -160,8 +169,8 @@ std::string report_json(const Report& report) {
         json["effects"].push_back({{"id", effect.id},
                                    {"name", effect.name},
                                    {"status", status_name(effect.status)},
-                                   {"moment", effect.moment},
-                                   {"kind", effect.kind},
+                                   {"moment", moment_text(effect)},
+                                   {"kind", kind_text(effect)},
                                    {"reason", effect.reason}});
     }
     json["passes"] = nlohmann::ordered_json::array();
@@ -213,11 +222,11 @@ std::string report_text(const Report& report) {
 
     std::string text = "effects\n";
     for (const PlannedEffect& effect : report.effects) {
-        const std::string moment = effect.moment.empty() ? "" : effect.moment + ": ";
-        text += fmt::format(
-            "  {:<{}}  {:<7}  {}{}{}{}\n", effect.name, effect_width, status_name(effect.status),
-            cost_text(report, effect), moment, effect.reason,
-            effect.kind.empty() || effect.kind == "lacks" ? "" : fmt::format(" ({})", effect.kind));
+        const std::string moment = effect.moment ? fmt::format("{}: ", moment_word(*effect.moment)) : "";
+        const bool tells_kind = effect.kind && effect.kind != SkipKind::lacks;
+        text += fmt::format("  {:<{}}  {:<7}  {}{}{}{}\n", effect.name, effect_width,
+                            status_name(effect.status), cost_text(report, effect), moment, effect.reason,
+                            tells_kind ? fmt::format(" ({})", skip_kind_word(*effect.kind)) : "");
     }
     text += "passes\n";
     for (const PassReport& pass : report.passes) {
