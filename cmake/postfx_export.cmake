@@ -10,7 +10,7 @@ include(CMakePackageConfigHelpers)
 
 set(config_dir lib/cmake/postfx)
 set(libraries postfx postfx_glad postfx_base postfx_image postfx_gl postfx_plugin postfx_chain postfx_plan
-              postfx_budget postfx_execute postfx_testing postfx_gl_test_main)
+              postfx_report postfx_budget postfx_execute postfx_testing postfx_gl_test_main)
 
 # Inside the tree targets see its folders; to others they show the public headers.
 function(postfx_set_installed_headers target directory)

@@ -28,7 +28,7 @@ using study::ProvedSetting;
 Chain scene_referred(Chain chain, std::vector<std::string>& left_out) {
     std::vector<ChainEntry> kept;
     for (ChainEntry& entry : chain.entries) {
-        if (entry.effect->stage == "scene") {
+        if (entry.effect->stage == EffectStage::scene) {
             kept.push_back(std::move(entry));
         } else {
             left_out.push_back(entry.name);

@@ -45,8 +45,13 @@ std::string bounds_text(const SceneBounds& bounds) {
     return text + ".";
 }
 
+std::string_view moment_text(const PlannedEffect& effect) {
+    return effect.moment ? moment_word(*effect.moment) : "";
+}
+
 std::string kind_text(const PlannedEffect& effect) {
-    return effect.kind == "lacks" ? "lacks an input" : effect.kind;
+    if (!effect.kind) return "";
+    return effect.kind == SkipKind::lacks ? "lacks an input" : std::string(skip_kind_word(*effect.kind));
 }
 
 /// Which of the chain's effects were left out, and when.
@@ -54,7 +59,7 @@ std::string skipped_list(const Report& report) {
     std::vector<std::string> items;
     for (const PlannedEffect& effect : report.effects) {
         if (effect.status == EffectStatus::skipped)
-            items.push_back(fmt::format("{} ({})", effect.name, effect.moment));
+            items.push_back(fmt::format("{} ({})", effect.name, moment_text(effect)));
     }
     return items.empty() ? "all run" : fmt::format("without {}", fmt::join(items, ", "));
 }
@@ -77,7 +82,7 @@ std::string summary_cell(const SkippingStudy::Row& row, const SkippingStudy::Res
                            row.report.effects.size(), row.same ? "0" : copies(row.saved_ms, result));
     const PlannedEffect& effect = row.report.effects.front();
     if (effect.status != EffectStatus::skipped) return "runs";
-    return fmt::format("{}; {}", effect.moment, row.same ? "0" : copies(row.saved_ms, result));
+    return fmt::format("{}; {}", moment_text(effect), row.same ? "0" : copies(row.saved_ms, result));
 }
 
 std::string detail_row(const SkippingStudy::Row& row, const SkippingStudy::Result& result) {
@@ -91,7 +96,7 @@ std::string detail_row(const SkippingStudy::Row& row, const SkippingStudy::Resul
         const PlannedEffect& effect = row.report.effects.front();
         const bool skipped = effect.status == EffectStatus::skipped;
         status = status_name(effect.status);
-        moment = effect.moment;
+        moment = moment_text(effect);
         kind = kind_text(effect);
         if (skipped || effect.decision >= 0) reason = effect.reason;
     } else if (!row.report.effects.empty()) {

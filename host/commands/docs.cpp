@@ -81,7 +81,7 @@ std::string index_page(const Catalog& catalog) {
     text += "\n# Reference\n\n- [The program](cli.md): every command and option\n\n"
             "## Effects\n\n| Effect | Stage | |\n|---|---|---|\n";
     for (const EffectPtr& effect : catalog.effects()) {
-        text += fmt::format("| [{0}](effects/{0}.md) | {1} | {2} |\n", effect->id, effect->stage,
+        text += fmt::format("| [{0}](effects/{0}.md) | {1} | {2} |\n", effect->id, stage_word(effect->stage),
                             markdown_cell(effect->help));
     }
     return text;

@@ -58,13 +58,11 @@ public:
         if (measure_) return tell_measured(chain, scene, facts, options, budget, session->device().renderer);
         const Plan plan = Planner().plan(chain, facts, options);
         if (!shader_.empty()) return print_shader(plan);
-        Report report = describe(plan);
-        report.clock = "none: explain measures only with --measure";
+        const std::string clock = "none: explain measures only with --measure";
         if (json_) {
-            fmt::print("{}\n", json_of(report, budget).dump(2));
+            fmt::print("{}\n", with_budget(plan_json(plan, clock), budget).dump(2));
         } else {
-            fmt::print("{}{}attachments rendered: {}\n", report_text(report), budget ? budget->text() : "",
-                       fmt::join(plan.attachments, ", "));
+            fmt::print("{}{}", plan_text(plan, clock), budget ? budget->text() : "");
         }
         return Status::success;
     }
@@ -78,8 +76,9 @@ private:
                            trial_inputs(renderer, facts, scene_options_.time()));
     }
 
-    static nlohmann::ordered_json json_of(const Report& report, const std::optional<MetBudget>& budget) {
-        nlohmann::ordered_json json = nlohmann::ordered_json::parse(report_json(report));
+    static nlohmann::ordered_json with_budget(const std::string& report_or_plan,
+                                              const std::optional<MetBudget>& budget) {
+        nlohmann::ordered_json json = nlohmann::ordered_json::parse(report_or_plan);
         if (budget) json["budget"] = nlohmann::ordered_json::parse(budget->json());
         return json;
     }
@@ -96,7 +95,7 @@ private:
         const SkippingStudy::Result& result = study.result();
         const SkippingStudy::Row& row = result.rows.front();
         if (json_) {
-            nlohmann::ordered_json json = json_of(row.report, budget);
+            nlohmann::ordered_json json = with_budget(report_json(row.report), budget);
             json["measured"] = {{"device", device}, {"rounds", result.rounds}, {"copy_ms", result.copy_ms}};
             json["measured"].update(skipping_json(row, result.copy_ms));
             fmt::print("{}\n", json.dump(2));

@@ -64,7 +64,7 @@ private:
         const Catalog catalog = catalog_.load();
         for (const EffectPtr& effect : catalog.effects()) {
             items.push_back({{"id", effect->id},
-                             {"stage", effect->stage},
+                             {"stage", stage_word(effect->stage)},
                              {"help", effect->help},
                              {"version", effect->version},
                              {"module", effect->module_path.string()}});

@@ -49,10 +49,10 @@ public:
         app.add_option("--fps", fps_, "Frames per second of a sequence")
             ->check(CLI::PositiveNumber)
             ->capture_default_str();
-        app.add_option(
-               "--save", save_,
-               "Write attachments too: depth=FILE,normal=FILE,... (color, depth, normal, emission, ambient); "
-               "depth in metres along the view axis, 0 = nothing there")
+        app.add_option("--save", save_,
+                       fmt::format("Write attachments too: depth=FILE,normal=FILE,... ({}); "
+                                   "depth in metres along the view axis, 0 = nothing there",
+                                   fmt::join(attachment_names(), ", ")))
             ->type_name("NAME=FILE")
             ->default_str("")
             ->delimiter(',');
@@ -149,7 +149,7 @@ private:
         for (const std::string& item : save_) {
             const std::size_t equals = item.find('=');
             const std::string name = item.substr(0, equals);
-            const std::vector<std::string>& names = SceneRenderer::attachment_names();
+            const std::vector<std::string> names = attachment_names();
             if (equals == std::string::npos || std::find(names.begin(), names.end(), name) == names.end()) {
                 throw Error(fmt::format("--save \"{}\" is not NAME=FILE with NAME one of {}{}", item,
                                         fmt::join(names, ", "), did_you_mean(name, names)));

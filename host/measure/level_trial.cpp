@@ -40,7 +40,7 @@ private:
         for (std::size_t e = 0; e < chain.entries.size(); ++e) {
             ChainEntry& entry = chain.entries[e];
             if (counts_[e] > 0) entry.level = question_.entries[e].options.front().level;
-            if (entry.effect->stage != "scene") entry.enabled = false;
+            if (entry.effect->stage != EffectStage::scene) entry.enabled = false;
         }
         return chain;
     }
@@ -112,7 +112,7 @@ LevelTrial try_levels(const Chain& chain, const BudgetQuestion& question, const 
     options.fold = false; // levels share more programs, and the next trial finds them kept
     std::vector<std::size_t> counts = options_to_try(question, budget);
     for (std::size_t e = 0; e < counts.size(); ++e) {
-        if (chain.entries[e].effect->stage != "scene") counts[e] = 0;
+        if (chain.entries[e].effect->stage != EffectStage::scene) counts[e] = 0;
     }
     const bool any = std::any_of(counts.begin(), counts.end(), [](std::size_t count) { return count > 1; });
     return any ? Tryer(chain, question, facts, options, inputs, std::move(counts)).run() : LevelTrial{};

@@ -28,7 +28,7 @@ SceneFacts facts_of(const Scene& scene, ViewBounds& bounds, Size size, double ti
     SceneFacts facts;
     facts.width = size.width;
     facts.height = size.height;
-    facts.attachments = SceneRenderer::attachment_names();
+    facts.attachments = attachment_names();
     look(facts, bounds, scene.camera_at(time), time);
     return facts;
 }

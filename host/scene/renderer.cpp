@@ -6,6 +6,7 @@
 #include "shadow_maps.hpp"
 #include "view_block.hpp"
 
+#include <postfx/attachment.hpp>
 #include <postfx/error.hpp>
 
 #include <fmt/format.h>
@@ -19,10 +20,8 @@
 namespace postfx::host {
 namespace {
 
-const std::vector<std::string> optional_outputs = {"normal", "emission", "ambient"};
-
 OutputNames outputs_for(const std::vector<std::string>& wanted) {
-    const auto& known = SceneRenderer::attachment_names();
+    const std::vector<std::string> known = attachment_names();
     for (const std::string& name : wanted) {
         if (std::find(known.begin(), known.end(), name) == known.end()) {
             throw Error(fmt::format("a scene has no attachment \"{}\"{}; it has {}", name,
@@ -30,8 +29,11 @@ OutputNames outputs_for(const std::vector<std::string>& wanted) {
         }
     }
     OutputNames outputs{"color"};
-    for (const std::string& name : optional_outputs) {
-        if (std::find(wanted.begin(), wanted.end(), name) != wanted.end()) outputs.push_back(name);
+    for (const std::string& name : known) {
+        const bool is_output =
+            name != "color" && name != "depth"; // color is there, depth is no colour output
+        if (is_output && std::find(wanted.begin(), wanted.end(), name) != wanted.end())
+            outputs.push_back(name);
     }
     return outputs;
 }
@@ -46,17 +48,12 @@ struct Draw {
 
 } // namespace
 
-const std::vector<std::string>& SceneRenderer::attachment_names() {
-    static const std::vector<std::string> names = {"color", "depth", "normal", "emission", "ambient"};
-    return names;
-}
-
-const std::map<std::string, Format>& SceneRenderer::attachment_formats() {
-    static const std::map<std::string, Format> formats = {{"color", Format::rgba16f},
-                                                          {"depth", Format::depth32f},
-                                                          {"normal", Format::rgba16f},
-                                                          {"emission", Format::rgba16f},
-                                                          {"ambient", Format::rgba16f}};
+std::map<std::string, Format> SceneRenderer::attachment_formats() {
+    std::map<std::string, Format> formats;
+    for (const AttachmentInfo& info : known_attachments) {
+        const bool is_depth = info.holds == AttachmentInfo::Holds::depth;
+        formats.emplace(info.name, is_depth ? Format::depth32f : Format::rgba16f);
+    }
     return formats;
 }
 

@@ -63,9 +63,8 @@ public:
 
     const Scene& scene() const;
 
-    /// What can be wanted.
-    static const std::vector<std::string>& attachment_names();
-    static const std::map<std::string, Format>& attachment_formats();
+    /// Of what can be wanted (all known_attachments), by name.
+    static std::map<std::string, Format> attachment_formats();
 
 private:
     struct State;

@@ -92,10 +92,15 @@ std::string identity_text(const ParameterInfo& parameter) {
 }
 
 std::string stage_text(const EffectInfo& effect) {
-    if (effect.stage == "scene_to_display")
+    switch (effect.stage) {
+    case EffectStage::scene:
+        return "scene (scene-linear light, before the tone map)";
+    case EffectStage::scene_to_display:
         return "scene_to_display (from scene-linear light to the display)";
-    if (effect.stage == "display") return "display (what the display shows, after the tone map)";
-    return "scene (scene-linear light, before the tone map)";
+    case EffectStage::display:
+        return "display (what the display shows, after the tone map)";
+    }
+    return "";
 }
 
 std::string reads_text(const EffectInfo& effect) {
@@ -115,7 +120,7 @@ Json effect_json(const EffectInfo& effect) {
         {"id", effect.id},
         {"version", effect.version},
         {"help", effect.help},
-        {"stage", effect.stage},
+        {"stage", stage_word(effect.stage)},
         {"parameters", parameters},
         {"reads", effect.reads},
         {"levels", levels},

@@ -464,10 +464,10 @@ TEST_CASE("without cause the effect does not run, and the picture keeps its bits
     const std::uint32_t payload = 0x7fc01234u;
     std::memcpy(&color.at(4, 4, 1), &payload, sizeof payload);
     const Input input{.color = color};
-    const std::pair<Values, std::string> cases[] = {{{{"intensity", 0}}, "configuration"},
-                                                    {{{"radius", 0}}, "configuration"},
-                                                    {{{"radius", 1e-200}}, "configuration"},
-                                                    {with(emission), "scene"}};
+    const std::pair<Values, Moment> cases[] = {{{{"intensity", 0}}, Moment::configuration},
+                                               {{{"radius", 0}}, Moment::configuration},
+                                               {{{"radius", 1e-200}}, Moment::configuration},
+                                               {with(emission), Moment::scene}};
     for (const auto& [values, moment] : cases) {
         const Plan plan = plan_effect("bloom", input, values);
         CHECK(plan.passes.empty());

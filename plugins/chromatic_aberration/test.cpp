@@ -126,7 +126,7 @@ TEST_CASE("strength 0 changes no bit") {
     std::memcpy(&color.at(2, 0, 2), &payload, sizeof(payload));
     CHECK(same_bits(run(color, 0), color));
     CHECK(plan_effect("chromatic_aberration", {.color = color}, {{"strength", 0}}).effects.at(0).moment
-          == "configuration");
+          == Moment::configuration);
 }
 
 TEST_CASE("a constant stays as it is to the last bit") {

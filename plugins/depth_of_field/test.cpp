@@ -236,11 +236,11 @@ TEST_CASE("without cause the effect does not run, and the picture keeps its bits
     without_depth.attachments.clear();
     Input tele = input;
     tele.camera.near_plane = 4.9;
-    const std::tuple<Input, Values, std::string> cases[] = {
-        {input, {{"f_number", 128}}, "configuration"},
-        {input, {{"max_circle_of_confusion", 0}}, "configuration"},
-        {tele, {{"f_number", 8}, {"max_circle_of_confusion", 0.1}}, "scene"},
-        {without_depth, {{"max_circle_of_confusion", 0.1}}, "scene"}};
+    const std::tuple<Input, Values, Moment> cases[] = {
+        {input, {{"f_number", 128}}, Moment::configuration},
+        {input, {{"max_circle_of_confusion", 0}}, Moment::configuration},
+        {tele, {{"f_number", 8}, {"max_circle_of_confusion", 0.1}}, Moment::scene},
+        {without_depth, {{"max_circle_of_confusion", 0.1}}, Moment::scene}};
     for (const auto& [given, values, moment] : cases) {
         const Plan plan = plan_effect("depth_of_field", given, values);
         CHECK(plan.passes.empty());

@@ -311,14 +311,14 @@ TEST_CASE("no density, no opacity or no depth change no bit, and neither does no
             CHECK(same_bits(run_effect("fog", input, values), input.color));
             const Plan plan = plan_effect("fog", input, values);
             CHECK(plan.passes.empty());
-            CHECK(plan.effects.at(0).moment == "configuration");
-            CHECK(plan.effects.at(0).kind == "exact");
+            CHECK(plan.effects.at(0).moment == Moment::configuration);
+            CHECK(plan.effects.at(0).kind == SkipKind::exact);
         }
         CHECK(same_bits(run_effect("fog", input, {{"start", 2}, {"quality", level}}), input.color));
     }
     Input no_depth{.color = input.color};
     CHECK(same_bits(run_effect("fog", no_depth, {}), input.color));
-    CHECK(plan_effect("fog", no_depth, {}).effects.at(0).moment == "scene");
+    CHECK(plan_effect("fog", no_depth, {}).effects.at(0).moment == Moment::scene);
 }
 
 TEST_CASE("hostile pixels stay where they are, and opaque fog hides what is infinite") {

@@ -174,7 +174,7 @@ TEST_CASE("amount 0 changes no bit") {
     for (const Level level : all_levels) {
         const Values values = at(level, {{"amount", 0}});
         CHECK(same_bits(run_effect("grain", {.color = color}, values), color));
-        CHECK(plan_effect("grain", {.color = color}, values).effects.at(0).moment == "configuration");
+        CHECK(plan_effect("grain", {.color = color}, values).effects.at(0).moment == Moment::configuration);
     }
 }
 

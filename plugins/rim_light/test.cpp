@@ -201,12 +201,12 @@ TEST_CASE("no strength, no width, no light, and nothing to find edges by change 
         CHECK(same_bits(run_effect("rim_light", input, values), input.color));
         const Plan plan = plan_effect("rim_light", input, values);
         CHECK(plan.passes.empty());
-        CHECK(plan.effects.at(0).moment == "configuration");
-        CHECK(plan.effects.at(0).kind == "exact");
+        CHECK(plan.effects.at(0).moment == Moment::configuration);
+        CHECK(plan.effects.at(0).kind == SkipKind::exact);
     }
     const Plan blind = plan_effect("rim_light", {.color = input.color}, {});
     CHECK(blind.passes.empty());
-    CHECK(blind.effects.at(0).moment == "scene");
+    CHECK(blind.effects.at(0).moment == Moment::scene);
     CHECK_FALSE(same_bits(run_effect("rim_light", input, {{"width", 0}, {"profile", fresnel}}), input.color));
 }
 

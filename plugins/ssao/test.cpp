@@ -77,7 +77,7 @@ TEST_CASE("without an ambient share nothing is darkened, unless all light is to 
     const Plan plan = plan_effect("ssao", input);
     CHECK(plan.passes.empty());
     CHECK(plan.effects[0].status == EffectStatus::skipped);
-    CHECK(plan.effects[0].moment == "scene");
+    CHECK(plan.effects[0].moment == Moment::scene);
     const Image visible = visibility(input, medium);
     const Image result = run_effect("ssao", input, {{"without_ambient", 1}});
     Image64 expected = convert<double>(input.color);
@@ -361,11 +361,11 @@ TEST_CASE("without cause the effect does not run, and the picture keeps its bits
     Input flat = input;
     flat.attachments.erase("depth");
     // 1 mm at the near plane of 0.1 m is 0.1 pixels of 10: not seen, so skipped where that is allowed.
-    const std::tuple<Input, Values, std::string> cases[] = {
-        {input, {{"strength", 0}}, "configuration"},
-        {input, {{"radius", 0}}, "configuration"},
-        {input, {{"radius", 0.001}, {"skip", "visible"}}, "scene"},
-        {flat, {}, "scene"}};
+    const std::tuple<Input, Values, Moment> cases[] = {
+        {input, {{"strength", 0}}, Moment::configuration},
+        {input, {{"radius", 0}}, Moment::configuration},
+        {input, {{"radius", 0.001}, {"skip", "visible"}}, Moment::scene},
+        {flat, {}, Moment::scene}};
     for (const auto& [given, values, moment] : cases) {
         const Plan plan = plan_effect("ssao", given, values);
         CHECK(plan.passes.empty());

@@ -71,7 +71,7 @@ TEST_CASE("strength 0 changes no bit") {
         CHECK(same_bits(run_effect("vignette", {.color = color}, values), color));
         const Plan plan = plan_effect("vignette", {.color = color}, values);
         CHECK(plan.passes.empty());
-        CHECK(plan.effects.at(0).moment == "configuration");
+        CHECK(plan.effects.at(0).moment == Moment::configuration);
     }
 }
 
@@ -124,8 +124,8 @@ TEST_CASE("classic is an ellipse and never negative") {
 TEST_CASE("a parallel projection has no natural falloff") {
     Input input{.color = noise(33, 17, -5, 60), .camera = Camera::parallel(10, 0.1, 100)};
     CHECK(same_bits(run_effect("vignette", input, natural), input.color));
-    CHECK(plan_effect("vignette", input, natural).effects.at(0).moment == "scene");
-    CHECK(plan_effect("vignette", input, natural).effects.at(0).kind == "exact");
+    CHECK(plan_effect("vignette", input, natural).effects.at(0).moment == Moment::scene);
+    CHECK(plan_effect("vignette", input, natural).effects.at(0).kind == SkipKind::exact);
     CHECK_FALSE(same_bits(run_effect("vignette", input, artistic), input.color));
 }
 

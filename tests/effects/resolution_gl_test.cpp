@@ -140,14 +140,14 @@ class Comparison {
 public:
     /// What is wrong, or "".
     std::string check(const ChainEntry& entry, const Pair& scene) {
-        const bool is_display = entry.effect->stage == "display";
+        const bool is_display = entry.effect->stage == EffectStage::display;
         const auto looks = [&](const Input& input, bool is_twice) {
             Input given = input;
             if (is_display) given.color = shown(given.color);
             runner_.prepare(planner_.plan(Chain{{entry}}, facts_of(given), linear_output(Format::rgba16f)));
             const auto look = [&](const Image& picture) {
                 const Image small = is_twice ? halved(picture) : picture;
-                return look_of(entry.effect->stage == "scene" ? shown(small) : small);
+                return look_of(entry.effect->stage == EffectStage::scene ? shown(small) : small);
             };
             return std::array{look(given.color), look(runner_.draw(given))};
         };

@@ -28,8 +28,7 @@ public:
 
     /// Its start, with every attachment that there is.
     Input input(Size size) {
-        const host::SceneFrame frame =
-            renderer_.render(size.width, size.height, 0, host::SceneRenderer::attachment_names());
+        const host::SceneFrame frame = renderer_.render(size.width, size.height, 0, attachment_names());
         Input input{.color = {}, .camera = frame.camera, .time = 1.5, .frame = 7};
         for (const host::SceneAttachment& attachment : frame.attachments) {
             Image image = gl::read_texture(attachment.texture, size.width, size.height, attachment.format);

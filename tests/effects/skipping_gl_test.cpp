@@ -110,7 +110,7 @@ public:
         ++cases;
         std::string problem;
         const Outcome exact = *run(chain, input, Skip::exact);
-        count(exact.report, "exact");
+        count(exact.report, SkipKind::exact);
         if (!same_bits(exact.picture, all->picture)) {
             problem += fmt::format("exact skips change bits ({}): {}\n",
                                    first_difference(exact.picture, all->picture), skips(exact.report));
@@ -118,18 +118,23 @@ public:
         // In one pass with others, a compiler may round what is left in another order: by float steps, so within a
         // code. Without fusion there must not be a bit of difference.
         const Outcome code = *run(chain, input, Skip::code, true);
-        count(code.report, "code");
+        count(code.report, SkipKind::code);
         const int codes =
             largest_code_difference(code.picture, run(chain, input, Skip::nothing, true)->picture);
         if (codes > 1) problem += fmt::format("code skips change {} codes: {}\n", codes, skips(code.report));
         return problem;
     }
 
+    /// Of a skipped effect: "scene exact".
+    static std::string how(const PlannedEffect& effect) {
+        return fmt::format("{} {}", moment_word(effect.moment.value()), skip_kind_word(effect.kind.value()));
+    }
+
     static std::string skips(const Report& report) {
         std::string text;
         for (const PlannedEffect& effect : report.effects) {
             if (effect.status != EffectStatus::skipped) continue;
-            text += fmt::format("{} ({}, {}: {}) ", effect.name, effect.moment, effect.kind, effect.reason);
+            text += fmt::format("{} ({}: {}) ", effect.name, how(effect), effect.reason);
         }
         for (const PassReport& pass : report.passes) {
             if (pass.tiles_drawn && *pass.tiles_drawn < pass.tiles) {
@@ -160,13 +165,12 @@ public:
     Tally tally;
 
 private:
-    void count(const Report& report, std::string_view kind) {
+    void count(const Report& report, SkipKind kind) {
         for (const PlannedEffect& effect : report.effects) {
             asks_frame = asks_frame || effect.decision >= 0;
-            if (effect.status == EffectStatus::skipped && effect.kind == kind)
-                ++tally[effect.moment + " " + effect.kind];
+            if (effect.status == EffectStatus::skipped && effect.kind == kind) ++tally[how(effect)];
         }
-        if (kind != "exact") return; // tiles are
+        if (kind != SkipKind::exact) return; // tiles are
         for (const PassReport& pass : report.passes) {
             draws_tiles = draws_tiles || pass.tiles_drawn.has_value();
             if (pass.tiles_drawn && pass.drawn.value_or(true) && *pass.tiles_drawn < pass.tiles)
@@ -267,13 +271,14 @@ double random_value(const ParameterInfo& parameter, std::mt19937& random) {
 /// Effects that work on scene light in any order, then perhaps a tone map, then those for display light.
 Chain random_chain(const Catalog& effects, std::mt19937& random) {
     Chain chain;
-    for (const char* stage : {"scene", "scene_to_display", "display"}) {
+    for (const EffectStage stage :
+         {EffectStage::scene, EffectStage::scene_to_display, EffectStage::display}) {
         std::vector<EffectPtr> fitting;
         for (const EffectPtr& effect : effects.effects()) {
             if (effect->stage == stage) fitting.push_back(effect);
         }
         std::shuffle(fitting.begin(), fitting.end(), random);
-        const std::size_t most = std::string_view(stage) == "scene" ? 4 : 1;
+        const std::size_t most = stage == EffectStage::scene ? 4 : 1;
         const std::size_t count = fitting.empty() ? 0 : random() % (std::min(most, fitting.size()) + 1);
         for (std::size_t i = 0; i < count; ++i) {
             ChainEntry& entry = chain.add(effects, fitting[i]->id);

@@ -177,7 +177,7 @@ TEST_CASE("a question is made of chain, curves and plan") {
         chain_fixture::parse("effects: [blur, blur: {pin: low}, shade, blur: {enabled: false}]");
     Plan plan = plan_of(chain);
     plan.effects[3].status = postfx::EffectStatus::skipped;
-    plan.effects[3].moment = "configuration";
+    plan.effects[3].moment = postfx::Moment::configuration;
     plan.effects[3].reason = "enabled is false";
     const BudgetQuestion question = budget_question(chain, curves_of_blur(), plan);
     CHECK(question.base_ms == 1.5);

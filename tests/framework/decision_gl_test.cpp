@@ -104,8 +104,8 @@ TEST_CASE("an effect that the frame does not call for is skipped, with the numbe
     film.frame(dark);
     Report report = film.report();
     CHECK(effect_of(report, "flare").status == EffectStatus::skipped);
-    CHECK(effect_of(report, "flare").moment == "frame");
-    CHECK(effect_of(report, "flare").kind == "exact");
+    CHECK(effect_of(report, "flare").moment == postfx::Moment::frame);
+    CHECK(effect_of(report, "flare").kind == postfx::SkipKind::exact);
     CHECK(effect_of(report, "flare").reason == "brightest light 0.5 <= threshold 1");
     CHECK(drawn(report) == Names{"census of the picture", "flare/decision", "curve"});
 

@@ -148,13 +148,13 @@ TEST_CASE("identities and disabled effects are dropped, and say why") {
     REQUIRE(plan.effects.size() == 3);
     const auto& tint = plan.effects[0];
     CHECK(tint.status == EffectStatus::skipped);
-    CHECK(tint.moment == "configuration");
-    CHECK(tint.kind == "exact");
+    CHECK(tint.moment == postfx::Moment::configuration);
+    CHECK(tint.kind == postfx::SkipKind::exact);
     CHECK(tint.reason == "amount is 0");
     CHECK(plan.effects[1].status == EffectStatus::skipped);
-    CHECK(plan.effects[1].moment == "configuration");
+    CHECK(plan.effects[1].moment == postfx::Moment::configuration);
     CHECK(plan.effects[1].reason == "enabled is false");
-    CHECK(plan.effects[2].moment == "scene");
+    CHECK(plan.effects[2].moment == postfx::Moment::scene);
     CHECK(plan.effects[2].reason == "the scene has no depth");
 }
 

@@ -229,7 +229,7 @@ TEST_CASE("a C plugin is as good as a C++ one") {
     const postfx::EffectPtr effect = catalog.find("plain_c");
     REQUIRE(effect);
     CHECK(effect->version == "1.0.0");
-    CHECK(effect->stage == "scene");
+    CHECK(effect->stage == postfx::EffectStage::scene);
     CHECK(effect->parameters.at(0).identity == 1.0);
     CHECK(effect->sources.at(0).not_pointwise == "");
 }

@@ -101,7 +101,7 @@ TEST_CASE("guide: the effects are found, and say what the page says of them") {
         CHECK(catalog.find(effect));
     }
     CHECK(catalog.find("haze")->reads == std::vector<std::string>{"depth"});
-    CHECK(catalog.find("letterbox")->stage == "display");
+    CHECK(catalog.find("letterbox")->stage == EffectStage::display);
     CHECK(catalog.find("soft_focus")->levels.size() == 2);
 
     // "At most 40 lines of C++" is what the project promises for a pointwise effect.

@@ -28,7 +28,7 @@ Image picture_of(const std::string& scene_name, const std::string& chain_name, i
     facts.width = width;
     facts.height = height;
     facts.camera = scene.camera_at(0);
-    facts.attachments = host::SceneRenderer::attachment_names();
+    facts.attachments = attachment_names();
     const Plan plan = Planner().plan(chain, facts, {.output = Output::linear});
 
     host::SceneRenderer renderer(scene);

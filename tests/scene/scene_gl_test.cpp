@@ -323,8 +323,8 @@ TEST_CASE("shipped scenes and unusual sizes draw finite pictures") {
         INFO(entry.name);
         SceneRenderer scene(open_scene(entry.name, scenes));
         for (const glm::ivec2 at : {glm::ivec2(160, 90), {1, 1}, {7, 33}}) {
-            const SceneFrame frame = scene.render(at.x, at.y, 3, SceneRenderer::attachment_names());
-            for (const std::string& name : SceneRenderer::attachment_names()) {
+            const SceneFrame frame = scene.render(at.x, at.y, 3, postfx::attachment_names());
+            for (const std::string& name : postfx::attachment_names()) {
                 INFO(name);
                 const Image image = read(frame, name, at.x, at.y);
                 std::size_t not_finite = 0;

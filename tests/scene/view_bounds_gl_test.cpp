@@ -59,7 +59,7 @@ void check_view(SceneRenderer& renderer, ViewBounds& view_bounds, double time, g
     const Camera camera = own_camera.value_or(renderer.scene().camera_at(time));
     const SceneBounds said = view_bounds.at(time, camera, size.x, size.y);
     const SceneFrame frame =
-        renderer.render(size.x, size.y, time, SceneRenderer::attachment_names(), CameraOverride{camera, {}});
+        renderer.render(size.x, size.y, time, postfx::attachment_names(), CameraOverride{camera, {}});
     INFO(renderer.scene().name << " at " << time << " s, " << size.x << "x" << size.y);
     for (const SceneAttachment& attachment : frame.attachments) {
         if (!says_empty(said, attachment.name)) continue;

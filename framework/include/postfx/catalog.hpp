@@ -58,12 +58,23 @@ struct SourceInfo {
     std::vector<bool> names{};
 };
 
+/// Where an effect belongs in a chain, by the light that it works on.
+enum class EffectStage {
+    scene,            ///< scene-linear light
+    scene_to_display, ///< makes display light of it: a tone map
+    display,          ///< what the display shows
+};
+/// "scene", "scene_to_display", "display".
+std::string_view stage_word(EffectStage stage);
+/// By its word. Nothing when there is none.
+std::optional<EffectStage> stage_by_word(std::string_view word);
+
 /// One effect as found. Immutable; shared by chains and plans that use it.
 struct EffectInfo {
     std::string id;
     std::string version;
     std::string help;
-    std::string stage; ///< "scene", "scene_to_display", "display"
+    EffectStage stage = EffectStage::scene;
     std::vector<ParameterInfo> parameters;
     std::vector<std::string> reads; ///< attachments besides the chain's colour
     std::vector<LevelInfo> levels;  ///< empty = one quality only

@@ -9,7 +9,9 @@
 #include <cstdint>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace postfx {
@@ -124,22 +126,43 @@ struct Pass {
 enum class EffectStatus { ran, fused, skipped };
 std::string_view status_name(EffectStatus status);
 
+/// When it turns out that an effect need not run.
+enum class Moment {
+    configuration, ///< its values say so
+    scene,         ///< what is known of the scene says so
+    frame,         ///< the GPU decides, frame by frame
+};
+std::string_view moment_word(Moment moment);
+/// By its word. Nothing when there is none.
+std::optional<Moment> moment_by_word(std::string_view word);
+
+/// Why the picture may do without an effect.
+enum class SkipKind {
+    exact,   ///< no bit of it changes
+    code,    ///< at most one 8-bit code changes
+    visible, ///< what changes is by convention not seen
+    lacks,   ///< it has to: something that the effect needs is missing
+};
+std::string_view skip_kind_word(SkipKind kind);
+/// By its word. Nothing when there is none.
+std::optional<SkipKind> skip_kind_by_word(std::string_view word);
+
 /// What became of one entry of the chain.
 struct PlannedEffect {
     std::string name; ///< chain entry
     std::string id;   ///< effect
     EffectStatus status = EffectStatus::ran;
-    std::string moment; ///< when skipped: "configuration", "scene" or "frame"
-    std::string kind;   ///< when skipped: "exact", "code", "visible"; "lacks" when something is missing
-    std::string
-        reason; ///< when skipped: why. Otherwise: with what it was fused, or why not with its neighbour
+    std::optional<Moment> moment = {}; ///< when skipped
+    std::optional<SkipKind> kind = {}; ///< when skipped
+    /// When skipped: why. Otherwise: with what it was fused, or why not with its neighbour.
+    std::string reason = {};
     int decision = -1; ///< into Plan::decisions, when the frame decides
 };
 
 /// A question to the frame: its effect is skipped where the first number found is at most the second.
 struct Decision {
-    std::string kind;            ///< of the skip: "exact", "code", "visible"
-    std::string compared, limit; ///< names of the numbers
+    SkipKind kind = SkipKind::exact; ///< of the skip; never lacks
+    std::string compared, limit;     ///< names of the numbers
 };
 
 /// At most, of one plan: bits of Term.

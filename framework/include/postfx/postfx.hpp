@@ -12,6 +12,7 @@
 // Errors: postfx::Error is the only exception that the library throws of its own.
 #pragma once
 
+#include <postfx/attachment.hpp>
 #include <postfx/budget.hpp>
 #include <postfx/camera.hpp>
 #include <postfx/catalog.hpp>

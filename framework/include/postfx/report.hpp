@@ -53,7 +53,7 @@ struct Report {
     std::optional<std::vector<NonfiniteImage>> nonfinite; ///< in order of drawing; absent: was not watched
 };
 
-/// The plan's part of a report: everything but times.
+/// The plan's part of a report: everything but what a run tells.
 Report describe(const Plan& plan);
 
 /// {"effects": [{"id", "name", "status", "moment", "kind", "reason"}], "passes": [{"name", "effects", "width",
@@ -63,5 +63,11 @@ Report describe(const Plan& plan);
 std::string report_json(const Report& report);
 /// The same for people.
 std::string report_text(const Report& report);
+
+/// A plan that was not drawn: report_json() of describe(), with "attachments": the names of those that the host has to
+/// render. `clock`: what is said of times.
+std::string plan_json(const Plan& plan, const std::string& clock = "none: nothing was drawn");
+/// The same for people.
+std::string plan_text(const Plan& plan, const std::string& clock = "none: nothing was drawn");
 
 } // namespace postfx

@@ -48,7 +48,8 @@ BudgetEntry budget_entry(const ChainEntry& entry, const PlannedEffect& planned, 
     if (!effect.levels.empty()) result.level_id = effect.levels.at(static_cast<std::size_t>(entry.level)).id;
     if (planned.status == EffectStatus::skipped) {
         result.role = Role::skipped;
-        result.reason = planned.moment + ": " + planned.reason;
+        result.reason = planned.moment ? fmt::format("{}: {}", moment_word(*planned.moment), planned.reason)
+                                       : planned.reason;
         return result;
     }
     const auto known = curves.effects.find(effect.id);

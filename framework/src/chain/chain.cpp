@@ -1,17 +1,17 @@
 #include <postfx/chain.hpp>
 
+#include "base/words.hpp"
 #include "chain/read_value.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 namespace postfx {
 namespace {
 
-constexpr std::array<std::string_view, 4> skip_words = {"nothing", "exact", "code", "visible"};
+constexpr Words<4> skip_words = {"nothing", "exact", "code", "visible"};
 
 bool is_stepped(ParameterKind kind) {
     return kind == ParameterKind::integer || kind == ParameterKind::toggle || kind == ParameterKind::choice;
@@ -20,13 +20,11 @@ bool is_stepped(ParameterKind kind) {
 } // namespace
 
 std::string_view skip_word(Skip skip) {
-    return skip_words[static_cast<std::size_t>(skip)];
+    return word_among(skip_words, skip);
 }
 
 std::optional<Skip> skip_by_word(std::string_view word) {
-    const auto found = std::find(skip_words.begin(), skip_words.end(), word);
-    if (found == skip_words.end()) return std::nullopt;
-    return static_cast<Skip>(found - skip_words.begin());
+    return value_among<Skip>(skip_words, word);
 }
 
 std::string_view budget_word(Budget::Of of) {

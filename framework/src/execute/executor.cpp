@@ -11,8 +11,8 @@
 #include <gl/context.hpp>
 #include <gl/objects.hpp>
 #include <gl/pass_state.hpp>
-#include <plan/condition.hpp>
 #include <plan/frame_block.hpp>
+#include <report/run.hpp>
 
 #include <postfx/error.hpp>
 #include <postfx/executor.hpp>
@@ -37,10 +37,6 @@ FrameBlock block_of(const Plan& plan, const FrameInputs& inputs) {
 }
 
 using TexturePtr = std::shared_ptr<gl::Texture>;
-
-struct PassTime {
-    double cpu_ms = 0, wall_ms = 0;
-};
 
 } // namespace
 
@@ -176,29 +172,6 @@ struct Executor::State {
 
 namespace {
 
-/// What the frame decided, in the report's own words; passes that were not drawn leave it.
-void tell_decisions(const FrameDecisions::Outcome& outcome, const Plan& plan, Report& report) {
-    for (PlannedEffect& effect : report.effects) {
-        if (effect.decision < 0) continue;
-        const Decision& decision = plan.decisions[effect.decision];
-        const auto [compared, limit] = outcome.compared[effect.decision];
-        const bool live = (outcome.live >> effect.decision & 1u) != 0;
-        const std::string numbers = fmt::format("{} {:.4g} {} {} {:.4g}", decision.compared, compared,
-                                                live ? "is above" : "<=", decision.limit, limit);
-        if (live) {
-            effect.reason =
-                fmt::format("{}; frame: {}", plan.effects[&effect - report.effects.data()].reason, numbers);
-        } else {
-            effect.status = EffectStatus::skipped;
-            effect.moment = "frame";
-            effect.kind = decision.kind;
-            effect.reason = numbers;
-        }
-    }
-    for (std::size_t i = 0; i < report.passes.size(); ++i)
-        report.passes[i].drawn = holds(plan.passes[i].condition, outcome.live);
-}
-
 /// The pass that first writes to a target.
 const std::string& writer_of(const Plan& plan, std::size_t target) {
     static const std::string nobody;
@@ -218,14 +191,6 @@ TexturePtr reuse_or_make(std::vector<TexturePtr>& old, const Target& target) {
     });
     return found != old.end() ? std::move(*found)
                               : std::make_shared<gl::Texture>(target.width, target.height, target.format);
-}
-
-/// What the last frame read: its programs, and for tiles the mask, each tile of which is looked at once.
-void tell_taps(const std::vector<std::uint64_t>& taps, Report& report) {
-    for (std::size_t i = 0; i < taps.size(); ++i) {
-        PassReport& pass = report.passes[i];
-        pass.taps = taps[i] + (pass.drawn.value_or(true) ? static_cast<std::uint64_t>(pass.tiles) : 0);
-    }
 }
 
 bool counts_taps(const Plan& plan) {
@@ -439,32 +404,20 @@ void Executor::compile(const std::vector<std::uint32_t>& textures) {
 Report Executor::report() const {
     const State& state = *state_;
     state.expect_context();
-    Report report = describe(state.current.plan);
+    const Plan& plan = state.current.plan;
+    Report report = describe(plan);
     report.programs = state.current.programs;
+    report.clock = "none: times were not asked for";
     if (state.current.decisions && state.picture)
-        tell_decisions(state.current.decisions->read(), state.current.plan, report);
-    if (state.current.tiles && state.picture) {
-        const std::vector<std::optional<int>> drawn = state.current.tiles->read();
-        for (std::size_t i = 0; i < drawn.size(); ++i)
-            report.passes[i].tiles_drawn = drawn[i];
-    }
+        tell_decisions(state.current.decisions->read(), plan, report);
+    if (state.current.tiles && state.picture) tell_tiles(state.current.tiles->read(), report);
     if (state.current.taps && state.picture) tell_taps(state.current.taps->read(), report);
-    if (state.last_watch == Watch::nonfinite) report.nonfinite = state.watch->findings(state.current.plan);
-    if (state.last_timing == Timing::profile) {
-        for (std::size_t i = 0; i < report.passes.size(); ++i) {
-            report.passes[i].cpu_ms = state.profile[i].cpu_ms;
-            report.passes[i].wall_ms = state.profile[i].wall_ms;
-        }
-        report.clock = "CPU time of all threads and wall time around each finished pass (profile mode; "
-                       + state.clock->text + ")";
-    } else if (state.last_timing == Timing::gpu) {
-        const std::vector<double>& times = state_->ring->latest();
-        for (std::size_t i = 0; i < times.size() && state.clock->timer_queries_honest; ++i) {
-            report.passes[i].gpu_ms = times[i];
-        }
-        report.clock = state.clock->timer_queries_honest ? state.clock->text
-                                                         : "none to be believed: " + state.clock->text;
-    }
+    if (state.last_watch == Watch::nonfinite) report.nonfinite = nonfinite_images(plan, state.watch->read());
+    if (state.last_timing == Timing::profile) tell_profile(state.profile, state.clock->text, report);
+    if (state.last_timing == Timing::gpu && state.clock->timer_queries_honest)
+        tell_gpu_times(state.ring->latest(), state.clock->text, report);
+    else if (state.last_timing == Timing::gpu)
+        report.clock = "none to be believed: " + state.clock->text;
     return report;
 }
 

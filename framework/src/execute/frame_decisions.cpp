@@ -129,11 +129,11 @@ void FrameDecisions::execute(const Pass& pass, std::size_t pass_index) const {
     }
 }
 
-FrameDecisions::Outcome FrameDecisions::read() const {
+FrameOutcome FrameDecisions::read() const {
     std::vector<std::byte> bytes(fresh_decisions_.size());
     glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
     glGetNamedBufferSubData(decisions_.name(), 0, static_cast<GLsizeiptr>(bytes.size()), bytes.data());
-    Outcome outcome;
+    FrameOutcome outcome;
     std::memcpy(&outcome.live, bytes.data(), sizeof(outcome.live));
     outcome.compared.resize((bytes.size() - decisions_head) / (2 * sizeof(float)));
     std::memcpy(outcome.compared.data(), bytes.data() + decisions_head, bytes.size() - decisions_head);

@@ -3,10 +3,10 @@
 #pragma once
 
 #include <gl/objects.hpp>
+#include <report/run.hpp>
 
 #include <postfx/plan.hpp>
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -26,12 +26,8 @@ public:
     /// Draw, count or decide with the current program and textures; nothing happens where a condition fails.
     void execute(const Pass& pass, std::size_t pass_index) const;
 
-    struct Outcome {
-        std::uint32_t live = 0;                     ///< a bit for each decision that was for its effect
-        std::vector<std::array<float, 2>> compared; ///< per decision
-    };
     /// Of the last frame. Waits for the GPU.
-    Outcome read() const;
+    FrameOutcome read() const;
 
 private:
     std::vector<std::byte> fresh_censuses_, fresh_decisions_;

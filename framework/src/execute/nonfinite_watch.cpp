@@ -1,7 +1,5 @@
 #include <execute/nonfinite_watch.hpp>
 
-#include <fmt/format.h>
-
 #include <algorithm>
 
 namespace postfx {
@@ -30,10 +28,6 @@ void main() {
 }
 )";
 
-struct Count {
-    std::uint32_t pixels = 0, first = UINT32_MAX;
-};
-
 std::size_t image_count(const Plan& plan) {
     std::size_t count = plan.attachments.size();
     for (const Pass& pass : plan.passes)
@@ -45,12 +39,13 @@ std::size_t image_count(const Plan& plan) {
 
 NonfiniteWatch::NonfiniteWatch(const Plan& plan)
     : program_(gl::make_compute_program(count_shader, "non-finite watch")),
-      counts_(gl::make_buffer(std::max<std::size_t>(1, image_count(plan)) * sizeof(Count), nullptr)),
+      counts_(gl::make_buffer(std::max<std::size_t>(1, image_count(plan)) * sizeof(NonfiniteCount), nullptr)),
       images_(image_count(plan)) {}
 
 void NonfiniteWatch::begin_frame() {
-    const std::vector<Count> none(images_);
-    glNamedBufferSubData(counts_.name(), 0, static_cast<GLsizeiptr>(images_ * sizeof(Count)), none.data());
+    const std::vector<NonfiniteCount> none(images_);
+    glNamedBufferSubData(counts_.name(), 0, static_cast<GLsizeiptr>(images_ * sizeof(NonfiniteCount)),
+                         none.data());
     next_ = 0;
 }
 
@@ -64,39 +59,12 @@ void NonfiniteWatch::count(GLuint texture, int width, int height) {
                       static_cast<GLuint>((height + group_side - 1) / group_side), 1);
 }
 
-std::vector<NonfiniteImage> NonfiniteWatch::findings(const Plan& plan) const {
-    std::vector<Count> counts(images_);
+std::vector<NonfiniteCount> NonfiniteWatch::read() const {
+    std::vector<NonfiniteCount> counts(images_);
     glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
-    glGetNamedBufferSubData(counts_.name(), 0, static_cast<GLsizeiptr>(images_ * sizeof(Count)),
+    glGetNamedBufferSubData(counts_.name(), 0, static_cast<GLsizeiptr>(images_ * sizeof(NonfiniteCount)),
                             counts.data());
-
-    std::vector<NonfiniteImage> found;
-    const auto keep = [&](const Count& count, std::string name, int width, bool made_here) {
-        if (count.pixels == 0) return;
-        const int first = static_cast<int>(count.first);
-        found.push_back({std::move(name), count.pixels, first % width, first / width, made_here});
-    };
-    std::size_t slot = 0;
-    std::vector<bool> attachment_has, target_has(plan.targets.size());
-    for (const std::string& name : plan.attachments) {
-        attachment_has.push_back(counts[slot].pixels > 0);
-        keep(counts[slot++], name, plan.width, false);
-    }
-    // Passes may take turns with one target, so that what it held last is followed along them.
-    for (const Pass& pass : plan.passes) {
-        bool came_in = false;
-        for (const PassInput& input : pass.inputs) {
-            const bool is_attachment = input.image.kind == ImageRef::Kind::attachment;
-            came_in = came_in || (is_attachment ? attachment_has : target_has)[input.image.index];
-        }
-        for (std::size_t i = 0; i < pass.outputs.size(); ++i, ++slot) {
-            target_has[pass.outputs[i].index] = counts[slot].pixels > 0;
-            keep(counts[slot],
-                 pass.outputs.size() == 1 ? pass.name : fmt::format("{} output {}", pass.name, i), pass.width,
-                 !came_in);
-        }
-    }
-    return found;
+    return counts;
 }
 
 } // namespace postfx

@@ -2,8 +2,9 @@
 #pragma once
 
 #include <gl/objects.hpp>
+#include <report/run.hpp>
 
-#include <postfx/executor.hpp>
+#include <postfx/plan.hpp>
 
 #include <cstddef>
 #include <cstdint>
@@ -21,8 +22,8 @@ public:
     /// Count the next image's pixels that have a component which is no number.
     void count(GLuint texture, int width, int height);
 
-    /// What was counted of `plan`, the plan that this was made for. Waits for the GPU.
-    std::vector<NonfiniteImage> findings(const Plan& plan) const;
+    /// What was counted, in the order of drawing. Waits for the GPU.
+    std::vector<NonfiniteCount> read() const;
 
 private:
     gl::Program program_;

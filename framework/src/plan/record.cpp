@@ -16,17 +16,10 @@ namespace postfx {
 namespace {
 
 constexpr int largest_side = 32768; // no device has more; what the one at hand has, the executor asks
-constexpr std::array moments = {"configuration", "scene"};
-constexpr std::array identity_kinds = {"exact", "code", "visible"};
 
 /// A word that a plugin may have left out.
 std::string_view word_of(const char* text) {
     return text ? text : "";
-}
-
-template<std::size_t count>
-bool is_one_of(std::string_view word, const std::array<const char*, count>& words) {
-    return std::find(words.begin(), words.end(), word) != words.end();
 }
 
 /// What keeps an effect from being planned. Thrown between record()'s own functions only; never crosses the plugin.
@@ -94,7 +87,8 @@ private:
     }
     static void on_lacks(void* context, const char* reason) {
         self(context).guarded([&] {
-            self(context).recording_.identity = Identity{"scene", "lacks", std::string(word_of(reason))};
+            self(context).recording_.identity =
+                Identity{Moment::scene, SkipKind::lacks, std::string(word_of(reason))};
         });
     }
     static void on_decide(void* context, const postfx_decision* decision) {
@@ -131,27 +125,44 @@ private:
         });
     }
 
-    /// May a skip of that kind be made? Throws Wrong when there is no such kind.
-    bool is_allowed(std::string_view kind) const {
-        if (!is_one_of(kind, identity_kinds)) {
-            throw Wrong{fmt::format("would be skipped for the unknown kind \"{}\"", kind)};
-        }
-        return *skip_by_word(kind) <= skip_;
+    /// Throws Wrong when an effect can't say that.
+    static SkipKind skip_kind(std::string_view word) {
+        const std::optional<SkipKind> kind = skip_kind_by_word(word);
+        if (!kind || kind == SkipKind::lacks)
+            throw Wrong{fmt::format("would be skipped for the unknown kind \"{}\"", word)};
+        return *kind;
     }
 
-    bool identity(std::string_view moment, std::string_view kind, std::string_view reason) {
-        if (!is_one_of(moment, moments)) {
-            throw Wrong{fmt::format("is the identity at the unknown moment \"{}\"", moment)};
+    /// May the chain leave out what changes so much?
+    bool is_allowed(SkipKind kind) const {
+        switch (kind) {
+        case SkipKind::exact:
+            return skip_ >= Skip::exact;
+        case SkipKind::code:
+            return skip_ >= Skip::code;
+        case SkipKind::visible:
+            return skip_ >= Skip::visible;
+        case SkipKind::lacks:
+            return true;
         }
+        return false;
+    }
+
+    bool identity(std::string_view when, std::string_view what, std::string_view reason) {
+        const std::optional<Moment> moment = moment_by_word(when);
+        if (!moment || moment == Moment::frame)
+            throw Wrong{fmt::format("is the identity at the unknown moment \"{}\"", when)};
+        const SkipKind kind = skip_kind(what);
         if (!is_allowed(kind)) return false;
-        recording_.identity = Identity{std::string(moment), std::string(kind), std::string(reason)};
+        recording_.identity = Identity{*moment, kind, std::string(reason)};
         return true;
     }
 
     void decide(const postfx_decision& declared) {
-        const std::string_view kind = word_of(declared.kind), source = word_of(declared.source);
+        const std::string_view source = word_of(declared.source);
         if (recording_.decision) throw Wrong{"asks the frame twice"};
         if (!recording_.passes.empty()) throw Wrong{"asks the frame after it declared passes"};
+        const SkipKind kind = skip_kind(word_of(declared.kind));
         if (!is_allowed(kind)) return;
         RecordedDecision made;
         made.pass.name = "decision";
@@ -161,8 +172,7 @@ private:
             throw Wrong{fmt::format("decides by {} images", declared.input_count)};
         }
         read_inputs_and_numbers(declared, made.pass);
-        made.decision = {std::string(kind), std::string(word_of(declared.compared)),
-                         std::string(word_of(declared.limit))};
+        made.decision = {kind, std::string(word_of(declared.compared)), std::string(word_of(declared.limit))};
         recording_.decision = std::move(made);
     }
 

@@ -49,7 +49,9 @@ struct RecordedPass {
 };
 
 struct Identity {
-    std::string moment, kind, reason;
+    Moment moment = Moment::configuration;
+    SkipKind kind = SkipKind::exact;
+    std::string reason;
 };
 
 /// A question to the frame; `pass` has its source, inputs and numbers.

@@ -1,8 +1,10 @@
 #include <plugin/declarations.hpp>
 
+#include <base/words.hpp>
 #include <plugin/pointwise.hpp>
 #include <plugin/uncomment.hpp>
 
+#include <postfx/attachment.hpp>
 #include <postfx/error.hpp>
 
 #include <fmt/format.h>
@@ -17,8 +19,7 @@ namespace postfx {
 namespace {
 
 constexpr std::array reserved_ids = {"enabled", "quality", "pin", "name"};
-constexpr std::array stages = {"scene", "scene_to_display", "display"};
-constexpr std::array known_attachments = {"depth", "normal", "emission", "ambient"};
+constexpr Words<3> stage_words = {"scene", "scene_to_display", "display"};
 constexpr std::array<std::pair<std::string_view, ParameterKind>, 5> kinds = {{
     {"float", ParameterKind::number},
     {"int", ParameterKind::integer},
@@ -137,6 +138,11 @@ std::string glsl_name(const std::string& effect, const ParameterInfo& parameter)
     return name;
 }
 
+/// One that an effect declares; the chain's colour needs no declaration.
+bool is_side_attachment(std::string_view name) {
+    return find_attachment(name) && name != known_attachments.front().name;
+}
+
 bool has_word(std::string_view text, std::string_view word) {
     for (std::size_t at = text.find(word); at != std::string_view::npos; at = text.find(word, at + 1)) {
         const std::size_t end = at + word.size();
@@ -175,6 +181,14 @@ std::vector<bool> names_of(const SourceInfo& source, const std::vector<SourceInf
 
 } // namespace
 
+std::string_view stage_word(EffectStage stage) {
+    return word_among(stage_words, stage);
+}
+
+std::optional<EffectStage> stage_by_word(std::string_view word) {
+    return value_among<EffectStage>(stage_words, word);
+}
+
 std::vector<SourceInfo> read_sources(const postfx_module& module, const std::filesystem::path& origin) {
     const Complaint complain{origin, ""};
     check_stride("sources", module.source_count, module.source_stride, sizeof(postfx_source), complain);
@@ -207,14 +221,14 @@ EffectInfo read_effect(const postfx_effect& declared, const std::vector<SourceIn
     info.id = complain.effect;
     info.version = text_or_empty(effect.version);
     info.help = text_or_empty(effect.help);
-    info.stage = text_or_empty(effect.stage);
     info.sources = sources;
     info.module_path = origin;
     info.abi = &declared;
     info.gain = effect.gain;
-    if (std::find(stages.begin(), stages.end(), info.stage) == stages.end()) {
-        complain("has the unknown stage \"{}\"", info.stage);
-    }
+    const std::string stage = text_or_empty(effect.stage);
+    const std::optional<EffectStage> known_stage = stage_by_word(stage);
+    if (!known_stage) complain("has the unknown stage \"{}\"", stage);
+    info.stage = *known_stage;
     check_stride("parameters", effect.parameter_count, effect.parameter_stride, sizeof(postfx_parameter),
                  complain);
     for (std::uint32_t i = 0; i < effect.parameter_count; ++i) {
@@ -228,10 +242,8 @@ EffectInfo read_effect(const postfx_effect& declared, const std::vector<SourceIn
         source.names = names_of(source, sources, info.parameters);
     for (std::uint32_t i = 0; i < effect.read_count; ++i) {
         info.reads.push_back(text_or_empty(effect.reads[i]));
-        if (std::find(known_attachments.begin(), known_attachments.end(), info.reads.back())
-            == known_attachments.end()) {
+        if (!is_side_attachment(info.reads.back()))
             complain("reads the unknown attachment \"{}\"", info.reads.back());
-        }
     }
     check_stride("levels", effect.level_count, effect.level_stride, sizeof(postfx_level), complain);
     for (std::uint32_t i = 0; i < effect.level_count; ++i) {

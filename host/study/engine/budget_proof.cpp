@@ -43,7 +43,7 @@ public:
         : options_(options), chain_(chain), facts_(facts_of(scene.scene, scene.bounds, options.size, 0)),
           question_(budget_question(chain, curves, Planner().plan(chain, facts_))),
           renderer_(scene.scene, {.samples = 4}),
-          scene_frame_(renderer_.render(facts_.width, facts_.height, 0, SceneRenderer::attachment_names())) {
+          scene_frame_(renderer_.render(facts_.width, facts_.height, 0, attachment_names())) {
         proof_.scene = scene.scene.name;
         proof_.size = options.size;
         proof_.rounds = options.rounds;

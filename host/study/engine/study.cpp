@@ -104,7 +104,7 @@ EffectFindings Study::run(const EffectInfo& effect) {
     EffectFindings findings;
     findings.id = effect.id;
     findings.help = effect.help;
-    findings.stage = effect.stage;
+    findings.stage = stage_word(effect.stage);
     findings.values = spec.values;
     findings.picture_size = fmt::format("{}x{}", picture.width, picture.height);
     findings.metrics = metrics_of(effect.id);

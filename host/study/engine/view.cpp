@@ -27,9 +27,9 @@ View::View(StudyScene& scene, const EffectInfo& effect, Size size, int samples)
     : renderer_(scene.scene, {.samples = samples}),
       scene_frame_(renderer_.render(size.width, size.height, 0, wanted_by(effect))),
       facts_(facts_of(scene.scene, scene.bounds, size, 0)), textures_(textures_of(scene_frame_)),
-      scene_referred_(effect.stage == "scene") {
+      scene_referred_(effect.stage == EffectStage::scene) {
     Image64 light = read_light(scene_frame_, "color", size.width, size.height);
-    if (effect.stage == "display") {
+    if (effect.stage == EffectStage::display) {
         given_ = gl::Texture(size.width, size.height, Format::rgba16f);
         given_.upload(convert<float>(tone_mapped(std::move(light))));
         textures_["color"] = given_.name();
