@@ -2,7 +2,8 @@
 #
 # Builds one effect from its folder: <name>.cpp (and other *.cpp but reference.cpp, test.cpp, test_*.cpp) with every *.glsl
 # embedded, as the plugin postfx_<name>.so in OUTPUT_DIRECTORY (<build>/postfx_plugins). With test.cpp and reference.cpp there, also the test
-# <name>_gl_test. In the postfx tree it is called for every folder of plugins/; an out-of-tree effect calls it after
+# <name>_gl_test. With study.yaml there, how `postfx study` looks at it; with truth/ there, in the postfx tree, what it ought to give
+# (postfx_add_truth.cmake). In the postfx tree it is called for every folder of plugins/; an out-of-tree effect calls it after
 # find_package(postfx).
 
 set(POSTFX_CMAKE_DIR ${CMAKE_CURRENT_LIST_DIR})
@@ -62,6 +63,15 @@ function(postfx_add_effect name)
     add_test(NAME ${name}_gl_test COMMAND ${name}_gl_test)
     set_tests_properties(${name}_gl_test PROPERTIES
       ENVIRONMENT "POSTFX_PLUGIN_PATH=${CMAKE_BINARY_DIR}/postfx_plugins" SKIP_RETURN_CODE 77)
+  endif()
+
+  # How the program studies it lies beside its module.
+  set(studied ${effect_OUTPUT_DIRECTORY}/postfx_${name}.study.yaml)
+  file(GLOB study CONFIGURE_DEPENDS ${effect_DIRECTORY}/study.yaml)
+  if(study)
+    configure_file(${study} ${studied} COPYONLY)
+  else()
+    file(REMOVE ${studied})
   endif()
 
   file(GLOB truth CONFIGURE_DEPENDS ${effect_DIRECTORY}/truth/*.cpp)

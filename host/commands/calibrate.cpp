@@ -48,8 +48,8 @@ public:
         app.footer(
             "Budgets (`budget:` in a chain, --budget) are met by these times from then on, on this device "
             "with this driver.\n"
-            "Every effect is measured alone in a chain, in the scenes and with the values of "
-            "configs/study.yaml.");
+            "Every effect is measured alone in a chain, in the scenes and with the values that "
+            "`postfx study` has.");
     }
 
     Status run() override {
@@ -74,12 +74,14 @@ public:
         const StopOnInterrupt guard;
         try {
             for (const auto& [effect, levels] : known.curves.effects) {
-                if (!catalog.find(effect)) {
+                const EffectPtr found = catalog.find(effect);
+                if (!found) {
                     fmt::print(stderr, "postfx: {} has curves, but was not found: left out\n", effect);
                     continue;
                 }
+                const study::EffectSpec studied = spec.of(*found);
                 measured.effects[effect] =
-                    timed(study::entry_of(catalog, effect, spec.of(effect)), levels, spec.of(effect).scenes);
+                    timed(study::entry_of(catalog, effect, studied), levels, studied.scenes);
             }
         } catch (const Interrupted&) {
             fmt::print(stderr, "postfx: stopped; nothing was written\n");

@@ -34,14 +34,14 @@ public:
         app.add_option("EFFECT", effects_, "Effects to study (default: all that are found)")->default_str("");
         app.add_option(
                "--scene", scenes_,
-               "Instead of those of configs/study.yaml: a name from configs/scenes/, a scene file or a "
+               "Instead of those of the effect's study.yaml: a name from configs/scenes/, a scene file or a "
                "model (repeatable)")
             ->type_name("SCENE")
             ->default_str("")
             ->allow_extra_args(false);
         app.add_option(
                "--size", size_,
-               "Of pictures that are compared with truths, pixels; without, as configs/study.yaml says, "
+               "Of pictures that are compared with truths, pixels; without, as the effect's study.yaml says, "
                "or 480x270")
             ->type_name("WxH")
             ->default_str("");
@@ -73,7 +73,8 @@ public:
                        "Levels of which one draw takes longer are left out of their growth")
             ->check(CLI::Range(0.001, 1e6))
             ->capture_default_str();
-        app.add_option("--spec", spec_, "What of each effect is studied; configs/study.yaml without")
+        app.add_option("--spec", spec_,
+                       "What is studied of effects, before their own study.yaml; configs/study.yaml without")
             ->type_name("FILE")
             ->default_str("");
         app.add_option("--store", store_,

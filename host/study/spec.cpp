@@ -11,6 +11,8 @@
 namespace postfx::host::study {
 namespace {
 
+constexpr std::size_t max_bytes = std::size_t{1} << 20;
+
 /// A value as a chain file writes it; the chain's own reader checks it.
 std::string value_text(const YamlValue& value) {
     if (!value.is_list()) return value.text();
@@ -63,8 +65,11 @@ EffectSpec read_effect(const YamlValue& value, const EffectSpec& standard, const
 
 } // namespace
 
+std::filesystem::path entry_file(const EffectInfo& effect) {
+    return effect.module_path.parent_path() / fmt::format("postfx_{}.study.yaml", effect.id);
+}
+
 Spec Spec::read(const std::filesystem::path& file) {
-    constexpr std::size_t max_bytes = std::size_t{1} << 20;
     return parse(read_file(file, max_bytes, "a study"), input_name(file));
 }
 
@@ -79,9 +84,12 @@ Spec Spec::parse(const std::string& yaml, const std::string& origin) {
     return spec;
 }
 
-const EffectSpec& Spec::of(const std::string& effect) const {
-    const auto found = effects_.find(effect);
-    return found == effects_.end() ? default_ : found->second;
+EffectSpec Spec::of(const EffectInfo& effect) const {
+    if (const auto found = effects_.find(effect.id); found != effects_.end()) return found->second;
+    const std::filesystem::path own = entry_file(effect);
+    if (!std::filesystem::exists(own)) return default_;
+    return read_effect(parse_yaml(read_file(own, max_bytes, "a study"), own.string()), default_,
+                       "the study of " + effect.id);
 }
 
 ChainEntry entry_of(const Catalog& catalog, const std::string& effect, const EffectSpec& spec) {

@@ -1,4 +1,4 @@
-// What of each effect is studied: the data of configs/study.yaml.
+// What of each effect is studied: what configs/study.yaml, and study.yaml beside the effect, say.
 #pragma once
 
 #include <postfx/chain.hpp>
@@ -28,14 +28,18 @@ struct EffectSpec {
     std::optional<RadiusSpec> radius;
 };
 
+/// Where an effect's own entry is, if it has one: beside its module.
+std::filesystem::path entry_file(const EffectInfo& effect);
+
 class Spec {
 public:
     /// Throws Error with file:line:column.
     static Spec read(const std::filesystem::path& file);
     static Spec parse(const std::string& yaml, const std::string& origin);
 
-    /// What the file says of the effect, else its `default:`.
-    const EffectSpec& of(const std::string& effect) const;
+    /// What the file says of the effect, else what its own entry_file() says, else the file's `default:`. Throws Error
+    /// with file:line:column.
+    EffectSpec of(const EffectInfo& effect) const;
 
 private:
     EffectSpec default_;

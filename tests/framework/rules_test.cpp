@@ -1,4 +1,5 @@
-// Rules of the tree itself: what plugins export, and that the framework names no effect.
+// Rules of the tree itself: what plugins export, that framework and host name no effect, and that truths share nothing with
+// theirs.
 #include <catch2/catch.hpp>
 
 #include "fixtures.hpp"
@@ -9,6 +10,8 @@
 #include <cctype>
 #include <cstdio>
 #include <filesystem>
+#include <fstream>
+#include <regex>
 #include <sstream>
 #include <string>
 #include <string_view>
@@ -76,6 +79,23 @@ std::size_t find_name(std::string_view text, std::string_view word) {
     return std::string::npos;
 }
 
+/// What `text`, which lies in `folder`, includes besides files of that folder itself (in quotes) and the machinery of truths,
+/// the framework, libraries (in angles).
+std::vector<std::string> includes_beyond(const fs::path& folder, const std::string& text) {
+    static const std::regex include("#[ \\t]*include[ \\t]*([\"<]?)([^\">\\n]*)");
+    std::vector<std::string> beyond;
+    for (std::sregex_iterator found(text.begin(), text.end(), include), end; found != end; ++found) {
+        const std::string quote = (*found)[1], name = (*found)[2];
+        const bool own = quote == "\"" && name.find('/') == std::string::npos && fs::exists(folder / name);
+        const bool others = quote == "<" && name.find("..") == std::string::npos && !name.starts_with('/')
+                            && name.find("plugins/") == std::string::npos
+                            && !name.starts_with("postfx/plugin.")
+                            && !fs::exists(folder.parent_path() / name);
+        if (!own && !others) beyond.push_back(name);
+    }
+    return beyond;
+}
+
 } // namespace
 
 TEST_CASE("a plugin exports postfx_module_v1 and nothing else") {
@@ -103,20 +123,54 @@ TEST_CASE("framework and host name no effect") {
     for (const auto& folder : fs::directory_iterator(source / "plugins")) {
         if (folder.is_directory()) effects.push_back(lower(folder.path().filename().string()));
     }
-    for (const char* room :
-         {"framework", "host", "shaders", "cmake", "tests/harness", "tests/framework/fixtures"}) {
+    std::vector<fs::path> files = {source / "configs/study.yaml"};
+    for (const char* room : {"framework", "host", "shaders", "cmake", "tests/harness",
+                             "tests/framework/fixtures", "tests/truths"}) {
         for (const auto& entry : fs::recursive_directory_iterator(source / room)) {
-            if (!entry.is_regular_file()) continue;
-            // A truth is of an effect, and lives outside of the plugin so as to share nothing with it.
-            if (entry.path().parent_path() == source / "host/truths") continue;
-            const std::string text = lower(postfx::testing::file_bytes(entry.path()));
-            for (const std::string& effect : effects) {
-                const std::size_t at = find_name(text, effect);
-                if (at == std::string::npos) continue;
-                const auto line =
-                    1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(at), '\n');
-                FAIL_CHECK(entry.path().string() << ":" << line << " names the effect " << effect);
-            }
+            if (entry.is_regular_file()) files.push_back(entry.path());
         }
     }
+    for (const fs::path& file : files) {
+        const std::string text = lower(postfx::testing::file_bytes(file));
+        for (const std::string& effect : effects) {
+            const std::size_t at = find_name(text, effect);
+            if (at == std::string::npos) continue;
+            const auto line =
+                1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(at), '\n');
+            FAIL_CHECK(file.string() << ":" << line << " names the effect " << effect);
+        }
+    }
+}
+
+TEST_CASE("what lies beyond a truth's folder is found") {
+    const postfx::testing::TemporaryDirectory effect;
+    fs::create_directory(effect / "truth");
+    std::ofstream(effect / "exact_glow.hpp") << "// the effect's\n";
+    std::ofstream(effect / "truth/lens.hpp") << "// the truth's\n";
+    const auto beyond = [&](const std::string& text) { return includes_beyond(effect / "truth", text); };
+    CHECK(beyond("#include \"lens.hpp\"\n#include <truths/truth.hpp>\n#include <cmath>\n").empty());
+    for (const char* wrong :
+         {"#include \"../exact_glow.hpp\"", "#include \"exact_glow.hpp\"", "#include <exact_glow.hpp>",
+          "# include <../exact_glow.hpp>", "#include \"truth/../../exact_glow.hpp\"",
+          "#include <postfx/plugin.hpp>", "#include <postfx/plugin.h>", "#include </glow/exact_glow.hpp>",
+          "#include <plugins/glow/exact_glow.hpp>", "#include GLOW"}) {
+        INFO(wrong);
+        CHECK(beyond(std::string("#include <cmath>\n") + wrong + "\n").size() == 1);
+    }
+}
+
+TEST_CASE("a truth includes nothing of its effect") {
+    int files = 0;
+    for (const auto& effect : fs::directory_iterator(fs::path(POSTFX_SOURCE_DIRECTORY) / "plugins")) {
+        const fs::path folder = effect.path() / "truth";
+        if (!fs::is_directory(folder)) continue;
+        for (const auto& entry : fs::recursive_directory_iterator(folder)) {
+            INFO(entry.path());
+            REQUIRE(entry.is_regular_file()); // a folder within would be built by nobody
+            CHECK(includes_beyond(folder, postfx::testing::file_bytes(entry.path()))
+                  == std::vector<std::string>{});
+            ++files;
+        }
+    }
+    CHECK(files > 0);
 }

@@ -34,7 +34,7 @@ public:
     Guide() {
         for (const CodeBlock& block : page()) {
             const fs::path file = block.value("file");
-            if (file.has_parent_path()) effects_.insert(file.parent_path().string());
+            if (file.has_parent_path()) effects_.insert(file.begin()->string());
         }
         for (const std::string& effect : effects_) {
             check_success(run_program({"new", effect}, scratch_.path()));
@@ -42,8 +42,10 @@ public:
                 fs::remove(scratch_.path() / effect / of_template);
         }
         for (const CodeBlock& block : page()) {
-            if (!block.value("file").empty())
-                std::ofstream(scratch_.path() / block.value("file")) << block.text;
+            if (block.value("file").empty()) continue;
+            const fs::path file = scratch_.path() / block.value("file");
+            fs::create_directories(file.parent_path());
+            std::ofstream(file) << block.text;
         }
         build();
         // The harness looks for effects once, when it is first used.
@@ -114,6 +116,25 @@ TEST_CASE("guide: the page's own test passes") {
         run_command({"ctest", "--test-dir", "build", "--output-on-failure"}, guide().file(""));
     check_success(tested);
     CHECK_THAT(tested.out, Catch::Contains("0 tests failed out of 1"));
+}
+
+TEST_CASE(
+    "guide: a truth compiles with what the page says that it includes, outside of the tree it is left out") {
+    const std::string source = POSTFX_SOURCE_DIRECTORY;
+    std::vector<std::string> compile = {
+        POSTFX_CXX_COMPILER,       "-std=c++20", "-Wall", "-Wextra", "-Werror", "-fsyntax-only",
+        "contrast/truth/truth.cpp"};
+    for (const char* folder : {"/host", "/framework/include", "/framework/src"})
+        compile.push_back("-I" + source + folder);
+    check_success(run_command(compile, guide().file("")));
+    const Outcome configured = run_command({"cmake", "-S", ".", "-B", "build"}, guide().file(""));
+    check_success(configured);
+    CHECK_THAT(configured.out, Catch::Contains("contrast: truth/ is left out"));
+}
+
+TEST_CASE("guide: an effect's own entry of the study comes along with its module") {
+    CHECK_THAT(file_bytes(guide().file("build/postfx_plugins/postfx_contrast.study.yaml")),
+               Catch::Contains("contrast: 1.5"));
 }
 
 TEST_CASE("guide: the plan is the one that the page prints") {

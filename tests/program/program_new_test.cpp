@@ -94,6 +94,17 @@ TEST_CASE("an installation finds its own effects and data", "[slow]") {
         for (const Json& item : items)
             CHECK_THAT(item[key].get<std::string>(), Catch::StartsWith(prefix + "/"));
     }
+    // Of every effect that says how it is studied, that lies beside its module.
+    std::set<std::string> entries, installed;
+    for (const fs::directory_entry& effect : fs::directory_iterator(POSTFX_SOURCE_DIRECTORY "/plugins")) {
+        if (fs::exists(effect.path() / "study.yaml"))
+            entries.insert("postfx_" + effect.path().filename().string() + ".study.yaml");
+    }
+    for (const fs::directory_entry& file : fs::recursive_directory_iterator(prefix + "/lib/postfx")) {
+        if (file.path().extension() == ".yaml") installed.insert(file.path().filename().string());
+    }
+    CHECK(installed == entries);
+    CHECK_FALSE(installed.empty());
     const Outcome made = run_command({program, "new", "film_tint"}, scratch.path());
     check_success(made);
     CHECK_THAT(made.out, Catch::Contains("-Dpostfx_DIR=" + prefix + "/lib/cmake/postfx"));

@@ -1,13 +1,15 @@
-// configs/study.yaml: what is read of it, what is refused, and that the shipped one fits the effects of this build.
+// What a study file and an effect's own entry say, what is refused of them, and that the shipped ones fit this build.
 #include <catch2/catch.hpp>
 
 #include <study/spec.hpp>
+#include <temporary_directory.hpp>
 #include <testing.hpp>
 
 #include <postfx/error.hpp>
 
 #include <scene/scene.hpp>
 
+#include <fstream>
 #include <map>
 
 using namespace postfx::host::study;
@@ -24,9 +26,14 @@ std::string refusal(const std::string& yaml) {
     return "";
 }
 
-postfx::EffectInfo effect_with_range(double low, double high) {
+postfx::EffectInfo effect_named(const std::string& id) {
     postfx::EffectInfo effect;
-    effect.id = "haze";
+    effect.id = id;
+    return effect;
+}
+
+postfx::EffectInfo effect_with_range(double low, double high) {
+    postfx::EffectInfo effect = effect_named("haze");
     postfx::ParameterInfo parameter;
     parameter.id = "reach";
     parameter.minimum = low;
@@ -49,7 +56,7 @@ effects:
   mist: {scenes: [cellar]}
 )",
                                   "study.yaml");
-    const EffectSpec& haze = spec.of("haze");
+    const EffectSpec haze = spec.of(effect_named("haze"));
     CHECK(haze.scenes == std::vector<std::string>{"attic", "cellar"});
     CHECK(haze.values == "amount: 0.5, mode: soft, color: [1, 0.5, 0]");
     CHECK(haze.judged_by == "layer");
@@ -57,10 +64,30 @@ effects:
     CHECK(haze.radius->per_height == 2);
     CHECK(haze.radius->values == "mode: hard");
     CHECK(haze.size == "1280x720");
-    CHECK(spec.of("mist").size.empty());
-    CHECK(spec.of("mist").scenes == std::vector<std::string>{"cellar"});
-    CHECK(spec.of("unheard_of").scenes.size() == 2);
-    CHECK_FALSE(spec.of("unheard_of").radius);
+    CHECK(spec.of(effect_named("mist")).size.empty());
+    CHECK(spec.of(effect_named("mist")).scenes == std::vector<std::string>{"cellar"});
+    CHECK(spec.of(effect_named("unheard_of")).scenes.size() == 2);
+    CHECK_FALSE(spec.of(effect_named("unheard_of")).radius);
+}
+
+TEST_CASE("an effect's own entry lies beside its module, and a study file goes before it") {
+    const postfx::testing::TemporaryDirectory folder;
+    postfx::EffectInfo effect = effect_named("haze");
+    effect.module_path = folder / "postfx_any.so";
+    const Spec general = Spec::parse("default: {scenes: [attic], judged_by: scene}", "study.yaml");
+    CHECK(general.of(effect).scenes == std::vector<std::string>{"attic"});
+
+    std::ofstream(folder / "postfx_haze.study.yaml") << "scenes: [cellar]\nvalues: {amount: 0.5}\n";
+    const EffectSpec own = general.of(effect);
+    CHECK(own.scenes == std::vector<std::string>{"cellar"});
+    CHECK(own.values == "amount: 0.5");
+    CHECK(own.judged_by == "scene"); // what it does not say has the default
+    const Spec special = Spec::parse("default: {scenes: [attic]}\neffects: {haze: {}}", "study.yaml");
+    CHECK(special.of(effect).values.empty());
+
+    std::ofstream(folder / "postfx_haze.study.yaml") << "scenes: [cellar]\nvalue: {amount: 0.5}\n";
+    CHECK_THROWS_WITH(general.of(effect),
+                      Catch::Contains("postfx_haze.study.yaml:2:") && Catch::Contains("values"));
 }
 
 TEST_CASE("what a study file says wrongly is refused at its place") {
@@ -89,7 +116,7 @@ TEST_CASE("the shipped study fits effects and scenes") {
     const Spec spec = Spec::read(configs / "study.yaml");
     for (const postfx::EffectPtr& effect : catalog().effects()) {
         INFO(effect->id);
-        const EffectSpec& own = spec.of(effect->id);
+        const EffectSpec own = spec.of(*effect);
         CHECK(entry_of(catalog(), effect->id, own).effect == effect);
         for (const std::string& scene : own.scenes)
             CHECK(std::filesystem::is_regular_file(configs / "scenes" / (scene + ".yaml")));

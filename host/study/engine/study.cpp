@@ -98,7 +98,7 @@ EffectFindings Study::run(const EffectInfo& effect) {
     views_.clear();
     pictures_.clear();
     const double start_ms = gl::HostTime::now().wall_ms;
-    const EffectSpec& spec = spec_.of(effect.id);
+    const EffectSpec spec = spec_.of(effect);
     const std::vector<ChainEntry> entries = every_level(entry_of(catalog_, effect.id, spec));
     const Size picture = size_for(spec);
     EffectFindings findings;
@@ -120,7 +120,7 @@ EffectFindings Study::run(const EffectInfo& effect) {
         findings.levels[i].scenes.resize(findings.scenes.size());
         findings.levels[i].metrics = measure_metrics(findings.metrics, entries[i], findings.notes);
     }
-    find_errors(findings, entries);
+    find_errors(findings, entries, spec.judged_by);
     find_times(findings, effect, entries);
     conclude(findings);
     find_steps(findings);
@@ -145,7 +145,8 @@ EffectFindings Study::run(const EffectInfo& effect) {
     return findings;
 }
 
-void Study::find_errors(EffectFindings& findings, const std::vector<ChainEntry>& entries) {
+void Study::find_errors(EffectFindings& findings, const std::vector<ChainEntry>& entries,
+                        const std::string& judged_by) {
     const std::string& id = entries.front().effect->id;
     const auto registered = truths_of(id);
     if (registered.empty()) findings.notes.emplace_back("no truth of it is known: only times were measured");
@@ -161,7 +162,7 @@ void Study::find_errors(EffectFindings& findings, const std::vector<ChainEntry>&
         if (whole && layer && !whole->facts.statistics && !layer->facts.statistics)
             scene_findings.inputs_error = relative_error(layer->picture, whole->picture).relative_rmse;
     }
-    findings.judged_by = judge_of(findings.scenes, spec_.of(id).judged_by);
+    findings.judged_by = judge_of(findings.scenes, judged_by);
     findings.error_is = error_text(findings);
     for (std::size_t s = 0; s < findings.scenes.size(); ++s) {
         ProgressBar progress(fmt::format("{} in {}, errors", id, findings.scenes[s].name),

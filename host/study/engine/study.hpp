@@ -40,7 +40,8 @@ public:
 private:
     Size size_for(const EffectSpec& spec) const;
     std::shared_ptr<StudyScene> scene(const std::string& name);
-    void find_errors(EffectFindings& findings, const std::vector<ChainEntry>& entries);
+    void find_errors(EffectFindings& findings, const std::vector<ChainEntry>& entries,
+                     const std::string& judged_by);
     void find_steps(EffectFindings& findings);
     void find_times(EffectFindings& findings, const EffectInfo& effect,
                     const std::vector<ChainEntry>& entries);

@@ -4,7 +4,6 @@
 #include "glow_kernel.hpp"
 
 #include <truth_of.hpp>
-#include <truths/quadrature.hpp>
 
 #include <cmath>
 #include <numbers>
@@ -95,17 +94,6 @@ double largest_difference(const Image64& a, const Image64& b) {
 constexpr double quadrature_error = 2e-6;
 
 } // namespace
-
-TEST_CASE("Gauss nodes integrate polynomials exactly") {
-    for (const int count : {1, 2, 7, 32, 64}) {
-        for (int power = 0; power < 2 * count; power += 3) {
-            double sum = 0;
-            for (const QuadratureNode& node : gauss_legendre(count))
-                sum += node.weight * std::pow(node.place, power);
-            CHECK(sum == Approx(1.0 / (power + 1)).epsilon(1e-13)); // rounding
-        }
-    }
-}
 
 TEST_CASE("what the kernel leaves of a wave is the series of its integral") {
     for (const int nodes : {32, 64}) {
