@@ -63,3 +63,17 @@ TEST_CASE("a foreign program with its own context and loader draws what postfx a
         CHECK((foreign.out.find(loader_beside + ": \n") == std::string::npos) == linked);
     }
 }
+
+TEST_CASE("docs/embedding.md shows what the foreign program does") {
+    const std::string page = file_bytes(POSTFX_SOURCE_DIRECTORY "/docs/embedding.md");
+    const std::string program = file_bytes(POSTFX_SOURCE_DIRECTORY "/tests/embedding/foreign_program.cpp");
+    const std::string begin = "```cpp\n", end = "```\n";
+    std::size_t blocks = 0;
+    for (std::size_t at = page.find(begin); at != std::string::npos; at = page.find(begin, at), ++blocks) {
+        at += begin.size();
+        const std::string block = page.substr(at, page.find(end, at) - at);
+        INFO(block);
+        CHECK(program.find(block) != std::string::npos);
+    }
+    CHECK(blocks == 2);
+}

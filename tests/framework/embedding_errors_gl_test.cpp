@@ -44,7 +44,7 @@ struct Texture {
     GLuint name = 0;
 };
 
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 
 } // namespace
 
@@ -153,22 +153,22 @@ TEST_CASE("numbers that are none are refused with their name") {
         CHECK_THAT(drawing.refusal(), Contains(words));
         drawing.frame = before;
     };
-    refused([](FrameInputs& f) { f.camera.vertical_fov = nan; },
+    refused([](FrameInputs& f) { f.camera.vertical_fov = not_a_number; },
             "FrameInputs::camera.vertical_fov is nan; expected");
     refused([](FrameInputs& f) { f.camera.vertical_fov = 180; }, "degrees between 0 and 180");
     refused([](FrameInputs& f) { f.camera.principal_point[1] = INFINITY; },
             "camera.principal_point[1] is inf");
-    refused([](FrameInputs& f) { f.camera.depth_scale = nan; }, "camera.depth_scale");
-    refused([](FrameInputs& f) { f.camera.near_plane = nan; }, "camera.near_plane");
-    refused([](FrameInputs& f) { f.camera.far_plane = nan; }, "camera.far_plane");
-    refused([](FrameInputs& f) { f.camera.view_to_world[13] = nan; }, "camera.view_to_world");
+    refused([](FrameInputs& f) { f.camera.depth_scale = not_a_number; }, "camera.depth_scale");
+    refused([](FrameInputs& f) { f.camera.near_plane = not_a_number; }, "camera.near_plane");
+    refused([](FrameInputs& f) { f.camera.far_plane = not_a_number; }, "camera.far_plane");
+    refused([](FrameInputs& f) { f.camera.view_to_world[13] = not_a_number; }, "camera.view_to_world");
     refused(
         [](FrameInputs& f) {
             f.camera.orthographic = true;
             f.camera.vertical_extent = 0;
         },
         "camera.vertical_extent is 0; expected metres above 0");
-    refused([](FrameInputs& f) { f.time = nan; }, "FrameInputs::time is nan");
+    refused([](FrameInputs& f) { f.time = not_a_number; }, "FrameInputs::time is nan");
     CHECK(drawing.refusal() == "no error");
 }
 
@@ -245,6 +245,7 @@ TEST_CASE("framebuffers that can't be drawn to are refused") {
     glCreateFramebuffers(1, &name);
     CHECK_THROWS_WITH(drawing.executor.run(drawing.frame, OutputTarget{name, 0, 0, 8, 8}),
                       Contains("it is not complete"));
+    gl::take_debug_messages(); // the driver says so too
     const Texture integers(GL_TEXTURE_2D);
     glTextureStorage2D(integers.name, 1, GL_RGBA8UI, 8, 8);
     glNamedFramebufferTexture(name, GL_COLOR_ATTACHMENT0, integers.name, 0);
@@ -288,6 +289,4 @@ TEST_CASE("another context, or none, is refused, and its objects are left alone"
         }
     }
     CHECK_THROWS_WITH(Executor(), Contains("no OpenGL context is current on this thread"));
-    // What the fixtures made lives in the first context, which is current no more.
-    const gl::LeaveObjects leave(true);
 }

@@ -55,7 +55,7 @@ struct ExecutorOptions {
     /// glfwGetProcAddress gives. Without it EGL and GLX are asked, whichever has a current context. What was found
     /// first serves all executors of the process.
     std::function<void*(const char* name)> get_proc_address{};
-    /// Does every call leave the context's state as it found it? It takes some hundred glGet a frame: about 25
+    /// Does every call leave the context's state as it found it? It takes some hundred glGet a frame: 8 to 25
     /// microseconds of CPU on llvmpipe (gl_state_gl_test measures it); where a driver runs on a thread of its own, they
     /// wait for it.
     ///
