@@ -34,7 +34,7 @@ void draw(char** arguments) {
 
     postfx::Catalog catalog = postfx::Catalog::discover({arguments[2]});
     postfx::Chain chain = postfx::read_chain(arguments[3], catalog);
-    postfx::Facts facts;
+    postfx::SceneFacts facts;
     facts.width = width;
     facts.height = height;
     postfx::Plan plan = postfx::Planner().plan(chain, facts);

@@ -20,7 +20,7 @@ namespace {
 struct Drawing {
     Image color = test_picture();
     Inputs inputs{color};
-    Plan plan = Planner().plan(chain_of({"tint"}), facts_of(color));
+    Plan plan = Planner().plan(chain_of({"tint"}), facts_of(color), linear_output());
     FrameInputs frame = inputs.of(plan);
     Executor executor;
 
@@ -186,9 +186,7 @@ TEST_CASE("the picture goes into the host's framebuffer and rectangle, and nowhe
     const Quiet quiet;
     Drawing drawing;
     const postfx::Output kind = GENERATE(postfx::Output::linear, postfx::Output::display);
-    Facts facts = facts_of(drawing.color);
-    facts.output = kind;
-    drawing.executor.prepare(Planner().plan(chain_of({"tint"}), facts));
+    drawing.executor.prepare(Planner().plan(chain_of({"tint"}), facts_of(drawing.color), {.output = kind}));
     drawing.executor.run(drawing.frame);
     const Image picture = drawing.executor.read_picture();
 
@@ -216,9 +214,8 @@ TEST_CASE("the picture goes into the host's framebuffer and rectangle, and nowhe
 TEST_CASE("codes reach a framebuffer that calls itself sRGB as they are") {
     const Quiet quiet;
     Drawing drawing;
-    Facts facts = facts_of(drawing.color);
-    facts.output = postfx::Output::display;
-    drawing.executor.prepare(Planner().plan(chain_of({"tint"}), facts));
+    drawing.executor.prepare(
+        Planner().plan(chain_of({"tint"}), facts_of(drawing.color), {.output = postfx::Output::display}));
     const Texture target(GL_TEXTURE_2D);
     const int width = drawing.color.width, height = drawing.color.height;
     glTextureStorage2D(target.name, 1, GL_SRGB8_ALPHA8, width, height);
@@ -261,7 +258,7 @@ TEST_CASE("another context, or none, is refused, and its objects are left alone"
     const auto executor = std::make_unique<Executor>();
     const Image color = test_picture();
     const Inputs inputs(color);
-    const Plan plan = Planner().plan(chain_of({"tint"}), facts_of(color));
+    const Plan plan = Planner().plan(chain_of({"tint"}), facts_of(color), linear_output());
     executor->prepare(plan);
     const FrameInputs frame = inputs.of(plan);
     executor->run(frame);

@@ -30,9 +30,7 @@ Chain every_kind() {
 }
 
 Plan plan_of(const Image& color) {
-    Facts facts = facts_of(color);
-    facts.output = postfx::Output::display;
-    const Plan plan = Planner().plan(every_kind(), facts);
+    const Plan plan = Planner().plan(every_kind(), facts_of(color), {.output = postfx::Output::display});
     REQUIRE_FALSE(plan.decisions.empty());
     REQUIRE(std::any_of(plan.passes.begin(), plan.passes.end(),
                         [](const postfx::Pass& pass) { return pass.where.kind != ImageRef::Kind::none; }));
