@@ -415,7 +415,7 @@ Report Executor::report() const {
     if (state.last_watch == Watch::nonfinite) report.nonfinite = nonfinite_images(plan, state.watch->read());
     if (state.last_timing == Timing::profile) tell_profile(state.profile, state.clock->text, report);
     if (state.last_timing == Timing::gpu && state.clock->timer_queries_honest)
-        tell_gpu_times(state.ring->latest(), state.clock->text, report);
+        tell_gpu_times(state_->ring->latest(), state.clock->text, report);
     else if (state.last_timing == Timing::gpu)
         report.clock = "none to be believed: " + state.clock->text;
     return report;
