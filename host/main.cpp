@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <iterator>
 
 namespace postfx::host {
 
@@ -18,6 +19,16 @@ std::vector<RegisteredCommand>& registered_commands() {
 namespace {
 
 constexpr int bad_input = 2, broken = 3;
+
+/// The word itself, or the present name of the command that it was.
+std::string present_name(const std::string& word) {
+    for (const RegisteredCommand& command : registered_commands()) {
+        if (command.former_name.empty() || command.former_name != word) continue;
+        fmt::print(stderr, "postfx: {} is called {} now\n", word, command.name);
+        return command.name;
+    }
+    return word;
+}
 
 /// CLI11 would say only that a subcommand is required.
 void check_command(const std::string& word) {
@@ -50,9 +61,15 @@ int run(int argc, char** argv) {
         made.back()->declare(*sub);
     }
     app.failure_message(failure_message);
-    if (argc > 1) check_command(argv[1]);
+    // As CLI11 takes them: the last first, without the program.
+    std::vector<std::string> words(std::make_reverse_iterator(argv + argc),
+                                   std::make_reverse_iterator(argv + 1));
+    if (!words.empty()) {
+        words.back() = present_name(words.back());
+        check_command(words.back());
+    }
     try {
-        app.parse(argc, argv);
+        app.parse(words);
     } catch (const CLI::ParseError& error) {
         const int status = app.exit(error);
         return status == 0 ? 0 : bad_input;

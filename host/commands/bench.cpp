@@ -48,8 +48,9 @@ public:
         app.add_flag("--unfused", unfused_, "Measure every chain without fusion as well");
         app.add_flag("--folded", folded_,
                      "Also measure the chains with all values compiled in, as a game would ship them");
-        app.add_flag("--run-all", run_all_,
+        app.add_flag("--no-skip", no_skip_,
                      "Measure every chain with every enabled effect run, called for or not, as well");
+        declare_former_flag(app, "--run-all", "--no-skip", no_skip_);
         app.add_flag("--watch-nonfinite", watch_, "Measure every chain while it is watched for NaN as well");
         app.add_flag("--passes", passes_, "Tell every pass of the chains as well");
         app.add_flag("--with-scene", with_scene_,
@@ -119,7 +120,7 @@ private:
             other.fold = true;
             if (folded_) add(" (folded)", other);
             chain.skip = Skip::nothing;
-            if (run_all_) add(" (run all)", plan_options_);
+            if (no_skip_) add(" (no skip)", plan_options_);
         }
     }
 
@@ -257,7 +258,7 @@ private:
     std::string format_ = "rgba16f";
     int samples_ = 21;
     bool unfused_ = false, folded_ = false, watch_ = false, passes_ = false, with_scene_ = false,
-         run_all_ = false, linear_ = false, json_ = false;
+         no_skip_ = false, linear_ = false, json_ = false;
 
     SceneFacts facts_;
     PlanOptions plan_options_;

@@ -24,6 +24,7 @@ public:
 struct RegisteredCommand {
     std::string name, help;
     std::unique_ptr<Command> (*make)();
+    std::string former_name; ///< is understood, with a note; "" for none
 };
 
 /// All of them, by name.
@@ -33,9 +34,10 @@ std::vector<RegisteredCommand>& registered_commands();
 /// file.
 template<class T>
 struct Register {
-    Register(std::string name, std::string help) {
+    Register(std::string name, std::string help, std::string former_name = "") {
         registered_commands().push_back({std::move(name), std::move(help),
-                                         []() -> std::unique_ptr<Command> { return std::make_unique<T>(); }});
+                                         []() -> std::unique_ptr<Command> { return std::make_unique<T>(); },
+                                         std::move(former_name)});
     }
 };
 

@@ -5,7 +5,7 @@
 
 #include "budget/met_budget.hpp"
 #include "measure/level_trial.hpp"
-#include "measure/skipping.hpp"
+#include "measure/skip_comparison.hpp"
 #include "run/gl_session.hpp"
 #include "run/picture_file.hpp"
 #include "run/scene_view.hpp"
@@ -32,7 +32,7 @@ public:
             ->capture_default_str()
             ->type_name("FILE");
         app.add_flag("--measure", measure_,
-                     "Draw scene and chain in turns with what --run-all does, and tell what skipping saves");
+                     "Draw scene and chain in turns with what --no-skip does, and tell what skipping saves");
         app.add_option("--samples", samples_, "Rounds of --measure; each draws both once")
             ->check(CLI::Range(3, 100000))
             ->capture_default_str();
@@ -42,8 +42,8 @@ public:
     }
 
     Status run() override {
-        if (measure_ && chain_options_.run_all())
-            throw Error("--measure compares with --run-all: give one of them");
+        if (measure_ && chain_options_.no_skip())
+            throw Error("--measure compares with --no-skip: give one of them");
         if (measure_ && !shader_.empty()) throw Error("--shader prints nothing else: leave --measure out");
         const Catalog catalog = catalog_options_.load();
         Chain chain = chain_options_.read(catalog);
@@ -86,18 +86,18 @@ private:
     Status tell_measured(const Chain& chain, const Scene& scene, const SceneFacts& facts,
                          const PlanOptions& options, const std::optional<MetBudget>& budget,
                          const std::string& device) const {
-        SkippingStudy study(scene, facts, options, scene_options_.time());
+        SkipComparison study(scene, facts, options, scene_options_.time());
         study.add("chain", chain);
         {
             ProgressBar progress("measuring", samples_ + warm_up_rounds);
             study.measure(samples_, progress);
         }
-        const SkippingStudy::Result& result = study.result();
-        const SkippingStudy::Row& row = result.rows.front();
+        const SkipComparison::Result& result = study.result();
+        const SkipComparison::Row& row = result.rows.front();
         if (json_) {
             nlohmann::ordered_json json = with_budget(report_json(row.report), budget);
             json["measured"] = {{"device", device}, {"rounds", result.rounds}, {"copy_ms", result.copy_ms}};
-            json["measured"].update(skipping_json(row, result.copy_ms));
+            json["measured"].update(skip_json(row, result.copy_ms));
             fmt::print("{}\n", json.dump(2));
         } else {
             fmt::print("{}{}{}", report_text(row.report), budget ? budget->text() : "",
@@ -106,18 +106,18 @@ private:
         return Status::success;
     }
 
-    static std::string text_of(const SkippingStudy::Result& result, const std::string& device) {
-        const SkippingStudy::Row& row = result.rows.front();
+    static std::string text_of(const SkipComparison::Result& result, const std::string& device) {
+        const SkipComparison::Row& row = result.rows.front();
         std::string text =
             fmt::format("\nscene and chain, median of {} rounds on {}\n", result.rounds, device);
         if (row.same) {
             return text
                    + fmt::format(
-                       "  as it is  {:8.2f} ms  {:>7} MiB\nnothing is skipped: --run-all is the same\n",
+                       "  as it is  {:8.2f} ms  {:>7} MiB\nnothing is skipped: --no-skip is the same\n",
                        row.as_is.ms, mebibytes_text(static_cast<std::int64_t>(row.as_is.texture_bytes)));
         }
         for (const auto& [name, frame] :
-             {std::pair{"as it is", &row.as_is}, std::pair{"run all", &row.run_all}}) {
+             {std::pair{"as it is", &row.as_is}, std::pair{"no skip", &row.no_skip}}) {
             text += fmt::format("  {:<8}  {:8.2f} ms  {:>7} MiB  reads {}\n", name, frame->ms,
                                 mebibytes_text(static_cast<std::int64_t>(frame->texture_bytes)),
                                 fmt::join(frame->attachments, ", "));

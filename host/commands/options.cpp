@@ -16,6 +16,14 @@
 
 namespace postfx::host {
 
+void declare_former_flag(CLI::App& app, const std::string& former, const std::string& name, bool& value) {
+    const auto take = [former, name, &value] {
+        fmt::print(stderr, "postfx: {} is called {} now\n", former, name);
+        value = true;
+    };
+    app.add_flag_callback(former, take)->group("");
+}
+
 void CatalogOptions::declare(CLI::App& app) {
     app.add_option("--plugin-dir", plugin_directories_, "Look for effect plugins here first (repeatable)")
         ->type_name("DIR")
@@ -40,7 +48,8 @@ void ChainOptions::declare(CLI::App& app) {
         ->type_name("YAML")
         ->default_str("")
         ->allow_extra_args(false);
-    app.add_flag("--run-all", run_all_, "Run every enabled effect, called for or not");
+    app.add_flag("--no-skip", no_skip_, "Run every enabled effect, called for or not");
+    declare_former_flag(app, "--run-all", "--no-skip", no_skip_);
     app.add_option(
            "--budget", budget_,
            "Choose the effects' levels: ms=6 (least error within a time) or error=0.01 (least time within "
@@ -67,7 +76,7 @@ Chain ChainOptions::read(const Catalog& catalog) const {
     if (!name.empty()) chain = read_chain_named(name, catalog);
     for (const std::string& effect : effects_)
         parse_chain_entry(effect, "--effect", catalog, chain);
-    if (run_all_) chain.skip = Skip::nothing;
+    if (no_skip_) chain.skip = Skip::nothing;
     if (!budget_.empty()) chain.budget = parse_budget(budget_, "--budget");
     return chain;
 }

@@ -14,6 +14,9 @@
 
 namespace postfx::host {
 
+/// A flag by its former name: understood, with a note, and not in the help.
+void declare_former_flag(CLI::App& app, const std::string& former, const std::string& name, bool& value);
+
 /// --plugin-dir: which effects there are.
 class CatalogOptions {
 public:
@@ -25,7 +28,7 @@ private:
     std::vector<std::string> plugin_directories_;
 };
 
-/// --chain and --effect: which effects are used; --run-all: whether called for or not; --budget, --curves and
+/// --chain and --effect: which effects are used; --no-skip: whether called for or not; --budget, --curves and
 /// --by-curves: at which levels.
 class ChainOptions {
 public:
@@ -34,7 +37,7 @@ public:
     void declare(CLI::App& app);
     /// Was any of the two given?
     bool given() const { return !chain_.empty() || !effects_.empty(); }
-    bool run_all() const { return run_all_; }
+    bool no_skip() const { return no_skip_; }
     /// By what a budget is to be met.
     const BudgetSource& budget_source() const { return budget_source_; }
     /// The chain file's effects, then those of --effect in order.
@@ -46,7 +49,7 @@ private:
     std::vector<std::string> effects_;
     std::string budget_;
     BudgetSource budget_source_;
-    bool run_all_ = false;
+    bool no_skip_ = false;
 };
 
 /// -o, --format, --bits and --quality.

@@ -131,6 +131,19 @@ TEST_CASE("unsafe entries of the plugin path are refused with a note") {
           });
 }
 
+TEST_CASE("where it looked is told, and noted when nothing was found") {
+    const TemporaryDirectory scratch;
+    const fs::path empty = directory_with(scratch, "empty", {});
+    const Environment environment(empty.string());
+    const Catalog found = Catalog::discover();
+    REQUIRE_FALSE(found.searched().empty());
+    CHECK(found.searched().front() == empty);
+    if (found.effects().empty()) { // an installation on this machine may have some
+        CHECK(found.notes().size() == found.searched().size());
+        CHECK(found.notes().front() == "no effect was found in " + empty.string());
+    }
+}
+
 TEST_CASE("the current directory is never searched") {
     const TemporaryDirectory scratch;
     const fs::path here = directory_with(scratch, "here", {"tint"});

@@ -1,4 +1,4 @@
-#include "skipping.hpp"
+#include "skip_comparison.hpp"
 
 #include "run/chain_runner.hpp"
 #include "run/scene_view.hpp"
@@ -29,7 +29,7 @@ std::vector<double> sums(std::vector<double> a, const std::vector<double>& b) {
     return a;
 }
 
-nlohmann::ordered_json frame_json(const SkippingStudy::Frame& frame, double copy_ms) {
+nlohmann::ordered_json frame_json(const SkipComparison::Frame& frame, double copy_ms) {
     return {{"ms", frame.ms},
             {"chain_ms", frame.chain_ms},
             {"copies", frame.chain_ms / copy_ms},
@@ -39,7 +39,7 @@ nlohmann::ordered_json frame_json(const SkippingStudy::Frame& frame, double copy
 
 } // namespace
 
-SkippingStudy::SkippingStudy(const Scene& scene, SceneFacts facts, const PlanOptions& options, double time)
+SkipComparison::SkipComparison(const Scene& scene, SceneFacts facts, const PlanOptions& options, double time)
     : scenes_(scene, facts.width, facts.height, time), facts_(std::move(facts)), options_(options),
       copy_(PlainPass::copy(facts_.width, facts_.height, options_.working_format)) {
     frame_.camera = facts_.camera;
@@ -49,7 +49,7 @@ SkippingStudy::SkippingStudy(const Scene& scene, SceneFacts facts, const PlanOpt
     scene_case({});
 }
 
-std::size_t SkippingStudy::scene_case(const std::vector<std::string>& attachments) {
+std::size_t SkipComparison::scene_case(const std::vector<std::string>& attachments) {
     for (const auto& [known, index] : scene_cases_) {
         if (SceneRenderers::same(known, attachments)) return index;
     }
@@ -60,7 +60,7 @@ std::size_t SkippingStudy::scene_case(const std::vector<std::string>& attachment
     return cases_.size() - 1;
 }
 
-SkippingStudy::Side SkippingStudy::make_side(const Chain& chain, const std::string& name) {
+SkipComparison::Side SkipComparison::make_side(const Chain& chain, const std::string& name) {
     Side side{std::make_unique<ChainRunner>(chain, facts_, options_), 0, 0};
     ChainRunner* runner = side.runner.get();
     side.scene_case = scene_case(runner->attachments());
@@ -72,22 +72,22 @@ SkippingStudy::Side SkippingStudy::make_side(const Chain& chain, const std::stri
     return side;
 }
 
-void SkippingStudy::add(std::string name, Chain chain) {
+void SkipComparison::add(std::string name, Chain chain) {
     Pair pair;
     pair.name = std::move(name);
     pair.as_is = make_side(chain, pair.name);
     chain.skip = Skip::nothing;
     pair.same = same_work(pair.as_is.runner->plan(), Planner().plan(chain, facts_, options_));
     if (pair.same) {
-        pair.run_all.scene_case = pair.as_is.scene_case;
-        pair.run_all.chain_case = pair.as_is.chain_case;
+        pair.no_skip.scene_case = pair.as_is.scene_case;
+        pair.no_skip.chain_case = pair.as_is.chain_case;
     } else {
-        pair.run_all = make_side(chain, pair.name);
+        pair.no_skip = make_side(chain, pair.name);
     }
     pairs_.push_back(std::move(pair));
 }
 
-void SkippingStudy::measure(int rounds, ProgressBar& progress) {
+void SkipComparison::measure(int rounds, ProgressBar& progress) {
     host::measure(cases_, rounds, progress);
     const gl::ClockCheck clock = gl::check_clock();
     const bool gpu = clock.timer_queries_honest;
@@ -99,20 +99,20 @@ void SkippingStudy::measure(int rounds, ProgressBar& progress) {
         result_.rows.push_back(row_of(pair, gpu));
 }
 
-SkippingStudy::Row SkippingStudy::row_of(const Pair& pair, bool gpu) const {
+SkipComparison::Row SkipComparison::row_of(const Pair& pair, bool gpu) const {
     Row row;
     row.name = pair.name;
     row.same = pair.same;
     row.report = pair.as_is.runner->executor().report();
     row.report.clock = result_.clock;
     row.as_is = frame_of(pair.as_is, *pair.as_is.runner, gpu);
-    row.run_all = pair.same ? row.as_is : frame_of(pair.run_all, *pair.run_all.runner, gpu);
+    row.no_skip = pair.same ? row.as_is : frame_of(pair.no_skip, *pair.no_skip.runner, gpu);
 
     std::vector<double> saved =
-        differences(cases_[pair.as_is.chain_case].times(gpu), cases_[pair.run_all.chain_case].times(gpu));
-    if (pair.as_is.scene_case != pair.run_all.scene_case) {
+        differences(cases_[pair.as_is.chain_case].times(gpu), cases_[pair.no_skip.chain_case].times(gpu));
+    if (pair.as_is.scene_case != pair.no_skip.scene_case) {
         saved = sums(saved, differences(cases_[pair.as_is.scene_case].times(gpu),
-                                        cases_[pair.run_all.scene_case].times(gpu)));
+                                        cases_[pair.no_skip.scene_case].times(gpu)));
     }
     row.saved_ms = median(saved);
     row.saved_p10 = quantile(saved, 0.1);
@@ -120,7 +120,7 @@ SkippingStudy::Row SkippingStudy::row_of(const Pair& pair, bool gpu) const {
     return row;
 }
 
-SkippingStudy::Frame SkippingStudy::frame_of(const Side& side, const ChainRunner& runner, bool gpu) const {
+SkipComparison::Frame SkipComparison::frame_of(const Side& side, const ChainRunner& runner, bool gpu) const {
     const Case &scene = cases_[side.scene_case], &chain = cases_[side.chain_case];
     Frame frame;
     frame.ms = median(sums(scene.times(gpu), chain.times(gpu)));
@@ -130,21 +130,21 @@ SkippingStudy::Frame SkippingStudy::frame_of(const Side& side, const ChainRunner
     return frame;
 }
 
-std::size_t SkippingStudy::Row::skipped() const {
+std::size_t SkipComparison::Row::skipped() const {
     return static_cast<std::size_t>(
         std::count_if(report.effects.begin(), report.effects.end(),
                       [](const PlannedEffect& effect) { return effect.status == EffectStatus::skipped; }));
 }
 
-std::int64_t SkippingStudy::Row::saved_bytes() const {
-    return static_cast<std::int64_t>(run_all.texture_bytes) - static_cast<std::int64_t>(as_is.texture_bytes);
+std::int64_t SkipComparison::Row::saved_bytes() const {
+    return static_cast<std::int64_t>(no_skip.texture_bytes) - static_cast<std::int64_t>(as_is.texture_bytes);
 }
 
-nlohmann::ordered_json skipping_json(const SkippingStudy::Row& row, double copy_ms) {
+nlohmann::ordered_json skip_json(const SkipComparison::Row& row, double copy_ms) {
     return {{"name", row.name},
             {"same", row.same},
             {"as_is", frame_json(row.as_is, copy_ms)},
-            {"run_all", frame_json(row.run_all, copy_ms)},
+            {"no_skip", frame_json(row.no_skip, copy_ms)},
             {"saved",
              {{"ms", row.saved_ms},
               {"p10", row.saved_p10},

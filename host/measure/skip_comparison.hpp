@@ -15,10 +15,10 @@
 namespace postfx::host {
 
 /// Draws chains on one view of a scene, as they are and with everything run, and compares what both cost.
-class SkippingStudy {
+class SkipComparison {
 public:
     /// `facts` are of the view at `time`.
-    SkippingStudy(const Scene& scene, SceneFacts facts, const PlanOptions& options, double time);
+    SkipComparison(const Scene& scene, SceneFacts facts, const PlanOptions& options, double time);
 
     void add(std::string name, Chain chain);
     /// All that was added, in turns.
@@ -36,8 +36,8 @@ public:
         Report report; ///< as it is, with what the frame decided
         /// Nothing is skipped and no frame may skip anything: both are the same frame.
         bool same = false;
-        Frame as_is, run_all;
-        double saved_ms = 0, saved_p10 = 0, saved_p90 = 0; ///< over the rounds, run_all - as_is
+        Frame as_is, no_skip;
+        double saved_ms = 0, saved_p10 = 0, saved_p90 = 0; ///< over the rounds, no_skip - as_is
 
         std::size_t skipped() const; ///< how many effects were
         std::int64_t saved_bytes() const;
@@ -59,7 +59,7 @@ private:
     struct Pair {
         std::string name;
         bool same = false;
-        Side as_is, run_all; ///< of the same, run_all has only the cases
+        Side as_is, no_skip; ///< of the same, no_skip has only the cases
     };
 
     Side make_side(const Chain& chain, const std::string& name);
@@ -78,8 +78,8 @@ private:
     Result result_;
 };
 
-/// {"name", "same", "as_is": {"ms", "chain_ms", "copies", "texture_bytes", "attachments"}, "run_all": the same, "saved":
+/// {"name", "same", "as_is": {"ms", "chain_ms", "copies", "texture_bytes", "attachments"}, "no_skip": the same, "saved":
 /// {"ms", "p10", "p90", "copies", "texture_bytes"}}
-nlohmann::ordered_json skipping_json(const SkippingStudy::Row& row, double copy_ms);
+nlohmann::ordered_json skip_json(const SkipComparison::Row& row, double copy_ms);
 
 } // namespace postfx::host

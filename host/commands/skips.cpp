@@ -1,9 +1,9 @@
-// postfx called-for: which effects which scenes call for, why, and what it saves to leave out the others.
+// postfx skips: which effects which scenes call for, why, and what it saves to leave out the others.
 #include "command.hpp"
 #include "options.hpp"
 
 #include "input/open_scene.hpp"
-#include "measure/skipping.hpp"
+#include "measure/skip_comparison.hpp"
 #include "run/gl_session.hpp"
 #include "run/resources.hpp"
 #include "run/scene_view.hpp"
@@ -27,7 +27,7 @@ namespace {
 struct SceneFindings {
     std::string name, description;
     SceneBounds bounds;
-    SkippingStudy::Result result;
+    SkipComparison::Result result;
 };
 
 std::string metres(double value) {
@@ -65,18 +65,18 @@ std::string skipped_list(const Report& report) {
 }
 
 /// In copy passes; never "-0.0".
-std::string copies(double ms, const SkippingStudy::Result& result) {
+std::string copies(double ms, const SkipComparison::Result& result) {
     const double tenths = std::round(10 * ms / result.copy_ms);
     return fmt::format("{:.1f}", tenths == 0 ? 0.0 : tenths / 10);
 }
 
 /// "9.1 (1.2 MiB)"; nothing where both ways are the same.
-std::string saved_text(const SkippingStudy::Row& row, const SkippingStudy::Result& result) {
+std::string saved_text(const SkipComparison::Row& row, const SkipComparison::Result& result) {
     if (row.same) return "";
     return fmt::format("{} ({} MiB)", copies(row.saved_ms, result), mebibytes_text(row.saved_bytes()));
 }
 
-std::string summary_cell(const SkippingStudy::Row& row, const SkippingStudy::Result& result) {
+std::string summary_cell(const SkipComparison::Row& row, const SkipComparison::Result& result) {
     if (row.report.effects.size() != 1)
         return fmt::format("{} of {} run; {}", row.report.effects.size() - row.skipped(),
                            row.report.effects.size(), row.same ? "0" : copies(row.saved_ms, result));
@@ -85,9 +85,9 @@ std::string summary_cell(const SkippingStudy::Row& row, const SkippingStudy::Res
     return fmt::format("{}; {}", moment_text(effect), row.same ? "0" : copies(row.saved_ms, result));
 }
 
-std::string detail_row(const SkippingStudy::Row& row, const SkippingStudy::Result& result) {
+std::string detail_row(const SkipComparison::Row& row, const SkipComparison::Result& result) {
     std::vector<std::string> unread;
-    for (const std::string& name : row.run_all.attachments) {
+    for (const std::string& name : row.no_skip.attachments) {
         const auto& read = row.as_is.attachments;
         if (std::find(read.begin(), read.end(), name) == read.end()) unread.push_back(name);
     }
@@ -106,7 +106,7 @@ std::string detail_row(const SkippingStudy::Row& row, const SkippingStudy::Resul
     }
     return markdown_row({row.name, status, moment, kind, markdown_cell(reason),
                          copies(row.as_is.chain_ms, result),
-                         row.same ? "" : copies(row.run_all.chain_ms, result), saved_text(row, result),
+                         row.same ? "" : copies(row.no_skip.chain_ms, result), saved_text(row, result),
                          fmt::format("{}", fmt::join(unread, ", "))});
 }
 
@@ -116,7 +116,7 @@ std::string scene_section(const SceneFindings& scene) {
                                    copies(scene.result.scene_ms, scene.result));
     text += "| | | Moment | Kind | Why | Cost | With everything run | Saved | Not read |\n"
             "|---|---|---|---|---|--:|--:|--:|---|\n";
-    for (const SkippingStudy::Row& row : scene.result.rows)
+    for (const SkipComparison::Row& row : scene.result.rows)
         text += detail_row(row, scene.result);
     return text;
 }
@@ -132,15 +132,15 @@ nlohmann::ordered_json scene_json(const SceneFindings& scene) {
                                    {"copy_ms", scene.result.copy_ms},
                                    {"scene_ms", scene.result.scene_ms},
                                    {"rows", nlohmann::ordered_json::array()}};
-    for (const SkippingStudy::Row& row : scene.result.rows) {
-        nlohmann::ordered_json item = skipping_json(row, scene.result.copy_ms);
+    for (const SkipComparison::Row& row : scene.result.rows) {
+        nlohmann::ordered_json item = skip_json(row, scene.result.copy_ms);
         item["effects"] = nlohmann::ordered_json::parse(report_json(row.report))["effects"];
         json["rows"].push_back(std::move(item));
     }
     return json;
 }
 
-class CalledForCommand : public Command {
+class SkipsCommand : public Command {
 public:
     void declare(CLI::App& app) override {
         app.add_option("SCENE", scenes_,
@@ -204,7 +204,7 @@ private:
                         ProgressBar& progress) const {
         ViewBounds bounds(scene);
         const SceneFacts facts = facts_of(scene, bounds, size, time_);
-        SkippingStudy study(scene, facts, {.fold = true}, time_);
+        SkipComparison study(scene, facts, {.fold = true}, time_);
         study.add("no effect", {});
         for (const EffectPtr& effect : catalog.effects()) {
             Chain alone;
@@ -219,7 +219,7 @@ private:
 
     /// What was typed, but for where the page went.
     std::string command() const {
-        std::string text = "postfx called-for";
+        std::string text = "postfx skips";
         for (const std::string& scene : scenes_)
             text += " " + scene;
         return text
@@ -242,7 +242,7 @@ private:
             fmt::format("<!-- Made by `{0}`. Not edited by hand. -->\n\n# Called for?\n\n"
                         "Every effect alone with its defaults, and the chain `{1}`, on every scene: did it "
                         "run, and if not, who "
-                        "said so and why, and what did that save against `--run-all`.\n\n"
+                        "said so and why, and what did that save against `--no-skip`.\n\n"
                         "Made by `{0} -o docs/called-for.md` on {2}. Clock: {3}. Medians of {4} rounds in "
                         "which everything was "
                         "drawn in turns, at {5}, told in copies: the time of a pass that copies the picture. "
@@ -254,7 +254,7 @@ private:
                         "seen.\n\n",
                         command(), chain_, device, findings.front().result.clock, samples_, size_);
         std::vector<std::string> head = {""}, line = {"---"};
-        for (const SkippingStudy::Row& row : findings.front().result.rows) {
+        for (const SkipComparison::Row& row : findings.front().result.rows) {
             if (row.report.effects.empty()) continue;
             head.push_back(row.name);
             line.emplace_back("---");
@@ -263,7 +263,7 @@ private:
                 + markdown_row(line);
         for (const SceneFindings& scene : findings) {
             std::vector<std::string> cells = {fmt::format("[{0}](#{0})", scene.name)};
-            for (const SkippingStudy::Row& row : scene.result.rows) {
+            for (const SkipComparison::Row& row : scene.result.rows) {
                 if (!row.report.effects.empty()) cells.push_back(summary_cell(row, scene.result));
             }
             text += markdown_row(cells);
@@ -281,8 +281,8 @@ private:
     bool json_ = false;
 };
 
-const Register<CalledForCommand>
-    registered("called-for", "Tell which effects each scene calls for, and what skipping saves");
+const Register<SkipsCommand>
+    registered("skips", "Tell which effects each scene calls for, and what skipping saves", "called-for");
 
 } // namespace
 } // namespace postfx::host

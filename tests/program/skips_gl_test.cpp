@@ -1,4 +1,4 @@
-// What is skipped, shown and measured: --run-all, explain --measure and called-for.
+// What is skipped, shown and measured: --no-skip, explain --measure and skips.
 #include "program.hpp"
 
 #include <testing.hpp>
@@ -43,20 +43,20 @@ fs::path empty_scene(const TemporaryDirectory& folder) {
 
 } // namespace
 
-TEST_CASE("with --run-all everything that is enabled runs") {
+TEST_CASE("with --no-skip everything that is enabled runs") {
     const TemporaryDirectory scratch;
     const std::string scene = empty_scene(scratch);
     const Json as_is = json_of({"explain", scene, "--chain", "default", "--json"});
-    const Json all = json_of({"explain", scene, "--chain", "default", "--json", "--run-all"});
+    const Json all = json_of({"explain", scene, "--chain", "default", "--json", "--no-skip"});
     CHECK(skipped_in(as_is) > 0);
     CHECK(skipped_in(all) == 0);
 
     const std::string picture = scratch / "picture.png";
     const Json rendered = json_of(
-        {"render", scene, "--chain", "default", "--size", "48x32", "--run-all", "--json", "-o", picture});
+        {"render", scene, "--chain", "default", "--size", "48x32", "--no-skip", "--json", "-o", picture});
     CHECK(skipped_in(rendered) == 0);
     // Without depth effects lack something: those can't be run.
-    const Outcome applied = run_program({"apply", "--color", picture, "--chain", "default", "--run-all",
+    const Outcome applied = run_program({"apply", "--color", picture, "--chain", "default", "--no-skip",
                                          "--json", "-o", scratch / "applied.png"});
     CHECK(applied.status == 0);
     for (const Json& effect : Json::parse(applied.out)["effects"]) {
@@ -75,9 +75,9 @@ TEST_CASE("explain --measure tells what skipping saves") {
     CHECK(measured["rounds"] == 3);
     CHECK(measured["same"] == false);
     CHECK(measured["copy_ms"].get<double>() > 0);
-    CHECK(measured["as_is"]["attachments"].size() < measured["run_all"]["attachments"].size());
+    CHECK(measured["as_is"]["attachments"].size() < measured["no_skip"]["attachments"].size());
     CHECK(measured["saved"]["texture_bytes"].get<std::int64_t>()
-          == measured["run_all"]["texture_bytes"].get<std::int64_t>()
+          == measured["no_skip"]["texture_bytes"].get<std::int64_t>()
                  - measured["as_is"]["texture_bytes"].get<std::int64_t>());
     CHECK(measured["saved"]["texture_bytes"].get<std::int64_t>() > 0);
     CHECK(measured["as_is"]["ms"].get<double>() > measured["as_is"]["chain_ms"].get<double>());
@@ -91,14 +91,14 @@ TEST_CASE("explain --measure tells what skipping saves") {
         Catch::Contains("nothing is skipped"));
     CHECK(json_of({"explain", scene, "--json"})["clock"] == "none: explain measures only with --measure");
 
-    check_refused(run_program({"explain", scene, "--measure", "--run-all"}), "give one of them");
+    check_refused(run_program({"explain", scene, "--measure", "--no-skip"}), "give one of them");
     check_refused(run_program({"explain", scene, "--measure", "--shader", "x"}), "--shader");
     check_refused(run_program({"explain", scene, "--measure", "--samples", "1"}), "--samples");
 }
 
-TEST_CASE("bench --run-all measures both ways") {
+TEST_CASE("bench --no-skip measures both ways") {
     const TemporaryDirectory scratch;
-    const Json json = json_of({"bench", empty_scene(scratch), "--chain", "default", "--run-all",
+    const Json json = json_of({"bench", empty_scene(scratch), "--chain", "default", "--no-skip",
                                "--with-scene", "--size", "96x64", "--samples", "3", "--json"});
     std::map<std::string, std::int64_t> bytes;
     for (const Json& row : json["rows"])
@@ -109,11 +109,11 @@ TEST_CASE("bench --run-all measures both ways") {
     CHECK(bytes["scene alone"] == 96 * 64 * (8 + 4));
 }
 
-TEST_CASE("called-for tells every effect of every scene") {
+TEST_CASE("skips tells every effect of every scene") {
     const TemporaryDirectory scratch;
     const std::string scene = empty_scene(scratch);
     const std::vector<std::string> ids = effect_ids();
-    const Json json = json_of({"called-for", scene, "sky", "--size", "48x32", "--samples", "3", "--json"});
+    const Json json = json_of({"skips", scene, "sky", "--size", "48x32", "--samples", "3", "--json"});
     REQUIRE(json["scenes"].size() == 2);
     for (const Json& found : json["scenes"]) {
         CHECK(found["empty"] == Json({"depth", "normal", "emission", "ambient"}));
@@ -133,22 +133,36 @@ TEST_CASE("called-for tells every effect of every scene") {
     }
 
     const std::string page = scratch / "page.md";
-    const Outcome written = run_program(
-        {"called-for", scene, "--size", "48x32", "--samples", "3", "--chain", "none", "-o", page});
+    const Outcome written =
+        run_program({"skips", scene, "--size", "48x32", "--samples", "3", "--chain", "none", "-o", page});
     CHECK(written.status == 0);
     CHECK(written.out == "wrote " + page + "\n");
     const std::string text = file_bytes(page);
-    CHECK_THAT(text, Catch::StartsWith("<!-- Made by `postfx called-for "));
+    CHECK_THAT(text, Catch::StartsWith("<!-- Made by `postfx skips "));
     CHECK_THAT(text, Catch::Contains("\n## nothing\n"));
     for (const std::string& id : ids)
         CHECK_THAT(text, Catch::Contains("\n| " + id + " | "));
 
-    check_refused(run_program({"called-for", "skie"}), "did you mean \"sky\"?");
-    check_refused(run_program({"called-for", "sky", "--size", "0x4"}), "0x4");
-    check_refused(run_program({"called-for", "sky", "--chain", "defalt"}), "did you mean \"default\"?");
-    check_refused(run_program({"called-for", scene, "--size", "8x8", "--samples", "3", "-o",
+    check_refused(run_program({"skips", "skie"}), "did you mean \"sky\"?");
+    check_refused(run_program({"skips", "sky", "--size", "0x4"}), "0x4");
+    check_refused(run_program({"skips", "sky", "--chain", "defalt"}), "did you mean \"default\"?");
+    check_refused(run_program({"skips", scene, "--size", "8x8", "--samples", "3", "-o",
                                (scratch / "missing/page.md").string()}),
                   "missing/page.md");
+}
+
+TEST_CASE("former words are understood with a note") {
+    const TemporaryDirectory scratch;
+    const std::string scene = empty_scene(scratch);
+    const Outcome all = run_program({"explain", scene, "--chain", "default", "--json", "--run-all"});
+    CHECK(all.status == 0);
+    CHECK_THAT(all.err, Catch::Contains("--run-all is called --no-skip now"));
+    CHECK(skipped_in(Json::parse(all.out)) == 0);
+    const Outcome help = run_program({"called-for", "--help"});
+    CHECK(help.status == 0);
+    CHECK_THAT(help.err, Catch::Contains("called-for is called skips now"));
+    CHECK_THAT(help.out, Catch::Contains("postfx skips"));
+    CHECK_THAT(run_program({"explain", "--help"}).out, !Catch::Contains("--run-all"));
 }
 
 TEST_CASE("docs/called-for.md tells every scene and every effect that there is") {
