@@ -119,6 +119,25 @@ TEST_CASE("an effect that no truth and no entry of the study knows gets times on
     CHECK(Json::parse(file_bytes(folder / "study/curves.json"))["effects"].empty());
 }
 
+TEST_CASE("an effect of your own is studied as the entry beside its module says, at its place told what is "
+          "wrong with it") {
+    const TemporaryDirectory folder;
+    const std::filesystem::path plugins = folder / "plugins";
+    std::filesystem::create_directory(plugins);
+    std::filesystem::copy_file(POSTFX_FIXTURES "/postfx_fixture_tint.so", plugins / "postfx_tint.so");
+    std::ofstream(plugins / "postfx_tint.study.yaml") << "values: {amount: 0.25, mode: add}\n";
+    const Outcome outcome = run_program(study(folder, {"tint", "--plugin-dir", plugins}));
+    INFO(outcome.err);
+    REQUIRE(outcome.status == 0);
+    const Json json = Json::parse(file_bytes(folder / "study/study.json"));
+    CHECK(json["effects"][0]["values"] == "amount: 0.25, mode: add");
+
+    std::ofstream(plugins / "postfx_tint.study.yaml") << "value: {amount: 0.25}\n";
+    const Outcome refused = run_program(study(folder, {"tint", "--plugin-dir", plugins}));
+    CHECK(refused.status == 2);
+    CHECK_THAT(refused.err, Catch::Contains("postfx_tint.study.yaml:1:") && Catch::Contains("values"));
+}
+
 TEST_CASE("taps are what the effect's shaders read; where they can't count, a note says so") {
     const TemporaryDirectory folder;
     const Outcome outcome =
