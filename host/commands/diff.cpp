@@ -1,5 +1,6 @@
 // postfx diff: how far two pictures are from each other, for people and for scripts.
 #include "command.hpp"
+#include "options.hpp"
 
 #include "terminal/effect_text.hpp"
 #include "terminal/text_table.hpp"
@@ -227,11 +228,8 @@ public:
 private:
     void check_outputs() const {
         if (output_ == "-" && map_ == "-") throw Error("-o - and --map - can't both be standard output");
-        if ((output_ == "-" || map_ == "-") && format_.empty())
-            throw Error("--format is needed for a picture on standard output, which has no ending: png, jpg, "
-                        "exr, hdr or pfm");
         for (const std::string& file : {output_, map_})
-            if (!file.empty()) check_writable_kind(file, kind_for(file));
+            if (!file.empty()) picture_file(file, kind_for(file));
     }
 
     /// Of other files the ending says it.

@@ -94,15 +94,22 @@ void OutputOptions::declare(CLI::App& app, const std::string& help) {
         ->capture_default_str();
 }
 
-PictureFile OutputOptions::file() const {
-    const bool standard_output = path_ == "-" || path_ == "/dev/stdout" || path_ == "/dev/fd/1";
-    const PictureFile file{standard_output ? "-" : path_, kind_, bits_, quality_};
-    if (standard_output && kind_.empty())
+PictureFile picture_file(const std::string& path, const std::string& kind) {
+    const bool standard_output = path == "-" || path == "/dev/stdout" || path == "/dev/fd/1";
+    if (standard_output && kind.empty())
         throw Error("--format is needed for a picture on standard output, which has no ending: png, jpg, "
                     "exr, hdr or pfm");
     if (standard_output && ::isatty(STDOUT_FILENO) != 0)
         throw Error("standard output is a terminal, which shows no picture; send it to a file or a program");
+    const PictureFile file{standard_output ? "-" : path, kind};
     check_writable_kind(file.path, file.kind);
+    return file;
+}
+
+PictureFile OutputOptions::file() const {
+    PictureFile file = picture_file(path_, kind_);
+    file.bits = bits_;
+    file.quality = quality_;
     if (bits_ == 16 && written_kind(file.path, file.kind) != "png") throw Error("--bits 16 is for a PNG");
     check_output_folder(file.path);
     return file;

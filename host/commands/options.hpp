@@ -52,6 +52,10 @@ private:
     bool no_skip_ = false;
 };
 
+/// A picture's `path`; of what is `-`, standard output, `kind` (--format) has to say what it is. Throws Error for a kind
+/// that can't be written, and for standard output on a terminal.
+PictureFile picture_file(const std::string& path, const std::string& kind);
+
 /// -o, --format, --bits and --quality.
 class OutputOptions {
 public:

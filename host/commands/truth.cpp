@@ -88,10 +88,7 @@ public:
     }
 
     Status run() override {
-        if (output_ == "-" && format_.empty())
-            throw Error("--format is needed for a picture on standard output, which has no ending: png, jpg, "
-                        "exr, hdr or pfm");
-        if (!output_.empty()) check_writable_kind(output_, kind());
+        if (!output_.empty()) picture_file(output_, kind());
         const Catalog catalog = catalog_options_.load();
         const TruthRequest request = read_request(catalog);
         const RegisteredTruth& registered = find_truth(request.entry.effect->id, kind_);

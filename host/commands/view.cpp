@@ -22,7 +22,9 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <cstdio>
 #include <filesystem>
+#include <optional>
 
 namespace postfx::host {
 namespace {
@@ -82,8 +84,13 @@ public:
         chain_options_.declare(app);
         catalog_options_.declare(app);
         app.add_option("--frames", frames_, "Leave after so many frames; 0 = stay")->capture_default_str();
-        app.add_option("-o,--output", output_, "On leaving, write the last picture here")
+        app.add_option("-o,--output", output_,
+                       "On leaving, write the last picture here; - is standard output, where text goes to "
+                       "stderr then")
             ->type_name("FILE.png");
+        app.add_option("--format", format_, "Kind of that picture, whatever FILE is called: png or jpg")
+            ->type_name("KIND")
+            ->default_str("");
         app.footer(std::string("Keys:\n") + help);
     }
 
@@ -94,20 +101,23 @@ public:
         ViewBounds bounds(scene);
         const SceneFacts facts = scene_options_.facts(scene, bounds);
         const PlanOptions options = scene_options_.plan_options(Output::display);
-        if (!output_.empty() && output_for({output_}) != Output::display) {
+        std::optional<PictureFile> file;
+        if (!output_.empty()) file = picture_file(output_, format_);
+        if (file && output_for(*file) != Output::display) {
             throw Error(Place{.file = output_}, "the window's picture is for display: name a .png");
         }
+        if (file && file->is_standard_output()) text_ = stderr;
         Window window(facts.width, facts.height, "postfx", debug_build);
         SceneRenderer renderer(scene);
         std::optional<MetBudget> met = meet_budget(chain, facts, options, chain_options_.budget_source(),
                                                    trial_inputs(renderer, facts, scene_options_.time()));
         ChainRunner runner(std::move(chain), facts, options);
-        if (met) fmt::print("{}", met->text());
+        if (met) fmt::print(text_, "{}", met->text());
         if (met) budget_.emplace(std::move(*met), runner);
-        fmt::print("{}", help);
+        fmt::print(text_, "{}", help);
         loop(window, runner, renderer, bounds);
         budget_.reset(); // while there is a context
-        if (!output_.empty()) write_picture(runner, {output_});
+        if (file) write_picture(runner, *file);
         tell_debug_messages();
         return Status::success;
     }
@@ -163,17 +173,17 @@ private:
             if (key >= GLFW_KEY_1 && key <= GLFW_KEY_9)
                 toggle(runner, static_cast<std::size_t>(key - GLFW_KEY_1));
             if (key == GLFW_KEY_P) paused_ = !paused_;
-            if (key == GLFW_KEY_H) fmt::print("{}", help);
+            if (key == GLFW_KEY_H) fmt::print(text_, "{}", help);
             if (key == GLFW_KEY_T && budget_)
                 budget_->try_again(runner, trial_inputs(renderer, runner.facts(), scene_time));
             if (key == GLFW_KEY_R)
-                fmt::print("{}{}", report_text(runner.executor().report()),
+                fmt::print(text_, "{}{}", report_text(runner.executor().report()),
                            budget_ ? budget_->text(runner) : "");
             if (key == GLFW_KEY_ESCAPE) window.close();
             if (key == GLFW_KEY_F12) {
                 const std::filesystem::path file = next_screenshot();
                 write_picture(runner, {file});
-                fmt::print("wrote {}\n", file.string());
+                fmt::print(text_, "wrote {}\n", file.string());
             }
         }
     }
@@ -184,14 +194,15 @@ private:
         entries[index].enabled = !entries[index].enabled;
         runner.replan(runner.facts());
         if (budget_) budget_->choose_again(runner);
-        fmt::print("{} is {}\n", entries[index].name, entries[index].enabled ? "on" : "off");
+        fmt::print(text_, "{} is {}\n", entries[index].name, entries[index].enabled ? "on" : "off");
     }
 
     SceneOptions scene_options_{"night_drive"};
     ChainOptions chain_options_{"cinematic"};
     CatalogOptions catalog_options_;
     std::uint32_t frames_ = 0;
-    std::string output_;
+    std::string output_, format_;
+    std::FILE* text_ = stdout; ///< where text goes
     std::optional<RunningBudget> budget_;
     bool paused_ = false;
 };

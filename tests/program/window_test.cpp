@@ -72,6 +72,21 @@ TEST_CASE("the window shows what render writes") {
     CHECK(difference.psnr > 50);
 }
 
+TEST_CASE("the window's picture goes to standard output, and text elsewhere then") {
+    if (!can_open_windows()) return;
+    const TemporaryDirectory scratch;
+    const std::string view = program + " view cornell --chain none --size 64x36 --frames 1 -o ";
+    // Redirected within: xvfb-run joins both streams.
+    const auto viewed = [&](const std::string& rest) {
+        return run_command({"xvfb-run", "-a", "sh", "-c", view + rest}, scratch.path());
+    };
+    REQUIRE(viewed("file.png > text").status == 0);
+    REQUIRE(viewed("- --format png > piped 2> told").status == 0);
+    CHECK(read_image(scratch / "piped").image.values == read_image(scratch / "file.png").image.values);
+    CHECK(file_bytes(scratch / "told").find("F12") != std::string::npos);
+    CHECK(viewed("- > piped").status != 0);
+}
+
 TEST_CASE("keys toggle effects, help, save a picture, pause and leave") {
     if (!can_press_keys()) return;
     const TemporaryDirectory scratch;
