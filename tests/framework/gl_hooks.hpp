@@ -39,7 +39,8 @@ private:
     static inline int calls_ = 0;
 };
 
-#define POSTFX_GL_HOOK(function) ::postfx::testing::GlHook<decltype(postfx_glad_##function), &postfx_glad_##function>
+#define POSTFX_GL_HOOK(function)                                                                             \
+    ::postfx::testing::GlHook<decltype(postfx_glad_##function), &postfx_glad_##function>
 
 /// Hooks on several functions at once.
 template<class... Hooks>
