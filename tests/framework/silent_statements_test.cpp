@@ -1,6 +1,9 @@
 // What BMP, TGA, PSD, TIFF, EXIF and PNM say of their pixels besides the pixels: each is followed or told.
+#include "icc_profiles.hpp"
 #include "image_checks.hpp"
 #include "png_bytes.hpp"
+
+#include <jpeg_segments.hpp>
 
 #include <image/orientation.hpp>
 
@@ -12,13 +15,6 @@ using namespace postfx::testing;
 using namespace std::string_literals;
 
 namespace {
-
-std::string little(unsigned value, int bytes = 4) {
-    std::string text;
-    for (int i = 0; i < bytes; ++i)
-        text += static_cast<char>(value >> (8 * i));
-    return text;
-}
 
 std::string big(unsigned value, int bytes = 4) {
     const std::string text = little(value, bytes);
@@ -103,7 +99,62 @@ std::string tiff(const std::string& samples, unsigned bits, unsigned photometric
            + samples;
 }
 
+/// Display P3 as EXIF and TIFF state it: the white point, then red, green and blue, as shares of 10000.
+std::string p3_rationals() {
+    std::string text;
+    for (const unsigned share : {3127, 3290, 6800, 3200, 2650, 6900, 1500, 600})
+        text += little(share) + little(10000);
+    return text;
+}
+
+/// A field whose values stand elsewhere.
+std::string far_field(unsigned tag, unsigned type, std::size_t count, std::size_t at) {
+    return little(tag, 2) + little(type, 2) + little(static_cast<unsigned>(count))
+           + little(static_cast<unsigned>(at));
+}
+
+/// The reddest light of Display P3, by Rec. 709's primaries (SMPTE RP 431-2 and ITU-R BT.709, D65 both).
+void check_p3_red(const ImageFile& file) {
+    CHECK(file.image.values[0] == Approx(1.2249).margin(2e-3)); // profiles hold four decimals, and D50
+    CHECK(file.image.values[1] == Approx(-0.0421).margin(2e-3));
+    CHECK(file.image.values[2] == Approx(-0.0196).margin(2e-3));
+}
+
 } // namespace
+
+TEST_CASE("Primaries and profiles of BMP, TIFF and EXIF become Rec. 709") {
+    const std::string red_bmp("\0\0\xff\0", 4), red("\xff\0\0", 3);
+    // Points of CIEXYZ in 2.30 fixed point.
+    std::string endpoints;
+    for (const double value : {0.48657, 0.22897, 0.0, 0.26567, 0.69174, 0.04511, 0.19822, 0.07929, 1.04394})
+        endpoints += little(static_cast<unsigned>(std::lround(std::ldexp(value, 30))));
+    check_p3_red(color_of(bmp(1, red_bmp, version_4(0, 1).replace(20, 36, endpoints))));
+
+    const std::string profile = p3_profile(1);
+    const std::string version_5 = version_4(0x4d424544, 0) + little(4) + little(124 + 4)
+                                  + little(static_cast<unsigned>(profile.size())) + little(0);
+    check_p3_red(color_of(bmp(1, red_bmp, version_5) + profile));
+
+    const std::size_t behind_head = 8 + 2 + 2 * 12 + 4;
+    const std::string exif_p3 = "II*\0"s + little(8) + little(2, 2) + far_field(318, 5, 2, behind_head)
+                                + far_field(319, 5, 6, behind_head + 16) + little(0) + p3_rationals();
+    check_p3_red(color_of(stored_png(1, 1, 8, 2, "\0"s + red, png_chunk("eXIf", exif_p3))));
+
+    // Three channels, and what is said of them behind the samples.
+    const std::size_t behind_samples = 8 + 2 + 12 * 11 + 4 + 6;
+    std::string primaries =
+        tiff(red + red, 8, 2,
+             far_field(318, 5, 2, behind_samples) + far_field(319, 5, 6, behind_samples + 16), 3)
+        + p3_rationals();
+    const std::size_t strip = primaries.find(little(273, 2) + little(4, 2));
+    primaries.insert(strip + 12, little(277, 2) + little(3, 2) + little(1) + little(3));
+    check_p3_red(color_of(primaries));
+
+    const std::string grey = grey_profile(1);
+    const std::string profiled =
+        tiff("\x80\x80", 8, 1, far_field(34675, 7, grey.size(), 8 + 2 + 12 * 9 + 4 + 2), 1) + grey;
+    CHECK(color_of(profiled).image.values[0] == Approx(128 / 255.0).margin(1e-3));
+}
 
 TEST_CASE("BMP: rows from the top, calibrated colours, linked profiles, pixels that are not square") {
     const std::string two_rows("\0\0\xff\0\xff\0\0\0", 8);

@@ -18,7 +18,7 @@ inline std::string with_segments(std::string jpeg, const std::string& segments) 
     return jpeg.insert(2, segments);
 }
 
-inline std::string little(std::uint32_t value, int bytes) {
+inline std::string little(std::uint32_t value, int bytes = 4) {
     std::string text;
     for (int i = 0; i < bytes; ++i)
         text += static_cast<char>(value >> (8 * i));
