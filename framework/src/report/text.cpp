@@ -36,7 +36,7 @@ std::string taps_text(const PassReport& pass) {
 std::string programs_text(const ProgramCount& programs) {
     std::string text = fmt::format("programs  {}", programs.all);
     if (programs.compiled > 0) text += fmt::format(", {} never compiled before", programs.compiled);
-    if (programs.warmed > 0) text += fmt::format(", {} of all on a second thread", programs.warmed);
+    if (programs.warmed > 0) text += fmt::format("; a second thread went through {} of all", programs.warmed);
     return text + "\n";
 }
 
