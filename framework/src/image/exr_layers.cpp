@@ -205,7 +205,7 @@ private:
 
     std::string view_for(const ExrPart& part, const std::string& path) const {
         if (!part.view.empty()) return part.view;
-        const std::string last = after_last_dot(path);
+        std::string last = after_last_dot(path);
         if (std::count(views_.begin(), views_.end(), last)) return last;
         // Channels without a prefix are the default view's (OpenEXR, "Multi-View OpenEXRs").
         return path.empty() && !multi_view_.empty() ? multi_view_.front() : "";
