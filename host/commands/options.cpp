@@ -101,7 +101,7 @@ PictureFile picture_file(const std::string& path, const std::string& kind) {
                     "exr, hdr or pfm");
     if (standard_output && ::isatty(STDOUT_FILENO) != 0)
         throw Error("standard output is a terminal, which shows no picture; send it to a file or a program");
-    const PictureFile file{standard_output ? "-" : path, kind};
+    PictureFile file{standard_output ? "-" : path, kind};
     check_writable_kind(file.path, file.kind);
     return file;
 }
