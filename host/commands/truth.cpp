@@ -61,10 +61,12 @@ public:
                        "Of the scene per pixel, as in the pictures that are to be compared")
             ->check(CLI::IsMember({1, 4}))
             ->capture_default_str();
-        app.add_option("-o,--output", output_, "Picture: .exr, .pfm, .hdr (scene-linear) or .png")
+        app.add_option("-o,--output", output_,
+                       "Picture: .exr, .pfm, .hdr (scene-linear) or .png; - is standard output, where text "
+                       "goes to stderr then")
             ->type_name("FILE");
         app.add_option("--format", format_,
-                       "Kind of the picture of -o -, standard output, where text goes to stderr then")
+                       "Kind of picture, whatever FILE is called: png, jpg, exr, hdr or pfm")
             ->type_name("KIND")
             ->default_str("");
         app.add_option("--store", store_, "Where sums are kept; truths/ in the user's cache without")
@@ -88,7 +90,7 @@ public:
     }
 
     Status run() override {
-        if (!output_.empty()) picture_file(output_, kind());
+        if (!output_.empty()) picture_file(output_, format_);
         const Catalog catalog = catalog_options_.load();
         const TruthRequest request = read_request(catalog);
         const RegisteredTruth& registered = find_truth(request.entry.effect->id, kind_);
@@ -108,9 +110,6 @@ public:
     }
 
 private:
-    /// Of other files the ending says it.
-    std::string kind() const { return output_ == "-" ? format_ : ""; }
-
     TruthRequest read_request(const Catalog& catalog) const {
         Chain chain;
         parse_chain_entry(effect_text(), "EFFECT", catalog, chain);
@@ -139,7 +138,7 @@ private:
     }
 
     void tell(const TruthResult& result, const TruthRequest& request, const fs::path& sums) const {
-        if (!output_.empty()) write_image(output_, convert<float>(result.picture), {.kind = kind()});
+        if (!output_.empty()) write_image(output_, convert<float>(result.picture), {.kind = format_});
         std::FILE* const text = output_ == "-" ? stderr : stdout;
         if (!json_) {
             fmt::print(text, "{} of {}, {}: {}\n", request.entry.effect->id, request.scene.name, kind_,

@@ -54,4 +54,10 @@ const RegisteredTruth& find_truth(const std::string& effect, const std::string& 
     throw Error(fmt::format("{} has no truth; there are {}", effect, others));
 }
 
+Image64 mean_of(Image64 sum, int count) {
+    for (double& value : sum.values)
+        value /= count;
+    return sum;
+}
+
 } // namespace postfx::host

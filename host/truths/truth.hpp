@@ -57,6 +57,9 @@ public:
     virtual Image64 picture(const Image64& sum, int count) const = 0;
 };
 
+/// What a sum of `count` samples is on average; count > 0.
+Image64 mean_of(Image64 sum, int count);
+
 struct RegisteredTruth {
     std::string effect; ///< id
     /// "scene": of the phenomenon itself, from the scene. "layer": the best that can be had from what the effect is

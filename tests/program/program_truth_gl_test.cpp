@@ -41,6 +41,13 @@ TEST_CASE("truth tells what it is, how well it knows, and writes the picture") {
     CHECK(file_bytes(picture).size() > 32 * 24 * 12);
     CHECK(std::filesystem::is_regular_file(json["sums"].get<std::string>()));
 
+    // The same sums to standard output, whatever else is told going elsewhere.
+    const Outcome piped = run_program(truth(
+        folder, {"--set", "radius=0.5", "--size", "32x24", "--samples", "8", "-o", "-", "--format", "pfm"}));
+    CHECK(piped.status == 0);
+    CHECK(piped.out == file_bytes(picture));
+    CHECK_THAT(piped.err, Catch::Contains("own error"));
+
     const Outcome spoken =
         run_program(truth(folder, {"--set", "radius=0.5", "--size", "32x24", "--samples", "8"}));
     CHECK(spoken.status == 0);
@@ -54,6 +61,7 @@ TEST_CASE("what is asked for wrongly is refused") {
     check_refused(run_program(truth(folder, {"--samples", "7"})), "even");
     check_refused(run_program({"truth", "cornell", "vignette", "--kind", "layer"}), "it has scene");
     check_refused(run_program(truth(folder, {"-o", "a.gif"})), ".exr");
+    check_refused(run_program(truth(folder, {"-o", "-"})), "--format is needed");
     check_refused(run_program({"truth", "cornell", "ssao: {radius: 1}", "--set", "radius=2"}), "not both");
     const Outcome unknown = run_program({"truth", "cornell", "tint", "--plugin-dir", POSTFX_FIXTURES});
     CHECK(unknown.status == 2);

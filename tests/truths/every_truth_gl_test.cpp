@@ -27,13 +27,6 @@ nodes:
   - {position: [-1, 0.6, -2], mesh: {sphere: {radius: 0.5}}, material: lamp}
 )";
 
-double root_mean_square_difference(const Image64& a, const Image64& b) {
-    double sum = 0;
-    for (std::size_t i = 0; i < a.values.size(); ++i)
-        sum += (a.values[i] - b.values[i]) * (a.values[i] - b.values[i]);
-    return std::sqrt(sum / static_cast<double>(a.values.size()));
-}
-
 } // namespace
 
 TEST_CASE("every truth knows its own error, which falls as it should") {

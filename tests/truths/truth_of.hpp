@@ -6,6 +6,8 @@
 #include <testing.hpp>
 #include <truths/truth_run.hpp>
 
+#include <cmath>
+#include <cstddef>
 #include <map>
 #include <memory>
 #include <string>
@@ -60,6 +62,14 @@ inline host::TruthResult truth_in(const std::string& effect, const std::string& 
     request.scene_samples = 1;
     if (light >= 0) request.given = std::make_shared<const Image64>(size, size, 3, light);
     return truth_of(request, kind, samples);
+}
+
+/// Of two pictures of one size.
+inline double root_mean_square_difference(const Image64& a, const Image64& b) {
+    double sum = 0;
+    for (std::size_t i = 0; i < a.values.size(); ++i)
+        sum += (a.values[i] - b.values[i]) * (a.values[i] - b.values[i]);
+    return std::sqrt(sum / static_cast<double>(a.values.size()));
 }
 
 } // namespace postfx::testing

@@ -50,12 +50,7 @@ public:
         }
     }
 
-    Image64 picture(const Image64& sum, int count) const override {
-        Image64 mean = sum;
-        for (double& value : mean.values)
-            value /= count;
-        return mean;
-    }
+    Image64 picture(const Image64& sum, int count) const override { return mean_of(sum, count); }
 
 private:
     SceneRenderer renderer_;

@@ -40,12 +40,7 @@ public:
         }
     }
 
-    Image64 picture(const Image64& sum, int count) const override {
-        Image64 mean = sum;
-        for (double& value : mean.values)
-            value /= count;
-        return mean;
-    }
+    Image64 picture(const Image64& sum, int count) const override { return mean_of(sum, count); }
 
 private:
     /// From `position` [m] on the lens. The frustum is shifted so that the plane at 1 / `focus` stays where it is.

@@ -30,13 +30,6 @@ constexpr const char* from_above = R"(
 camera: {position: [0, 5, 0], look_at: [0, 0, 0], up: [0, 0, -1], orthographic_extent: 2, near: 0.1, far: 10}
 )";
 
-double root_mean_square_difference(const Image64& a, const Image64& b) {
-    double sum = 0;
-    for (std::size_t i = 0; i < a.values.size(); ++i)
-        sum += (a.values[i] - b.values[i]) * (a.values[i] - b.values[i]);
-    return std::sqrt(sum / static_cast<double>(a.values.size()));
-}
-
 } // namespace
 
 TEST_CASE("a small light out of focus becomes a disc of the thin lens' diameter") {
